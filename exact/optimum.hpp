@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Internal to exact/.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "exact/number.hpp"
+#include "toolkit/bounds/weight_space.hpp"
+
+namespace cinch::exact {
+
+/// max { Σ w_j b_j : w ∈ W' } with its proof: the corner attains the value, and D(λ) equals it, so nothing exceeds it.
+struct Optimum {
+    Exact value, lambda;
+    std::vector<Exact> corner;
+};
+
+/// Empty if W' is. Fills the weights greedily from l, largest b first; before it returns, the corner is checked to lie in
+/// W', to attain the value, and to have no gap to D(λ) (std::logic_error otherwise, in every build).
+std::optional<Optimum> optimum(WeightSpace space, const std::vector<Exact>& b);
+
+} // namespace cinch::exact

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exact/rest_data.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <stdexcept>
+
+#include "exact/number.hpp"
+
+namespace cinch::exact {
+namespace {
+
+[[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument(what); }
+
+std::string hex(double x)
+{
+    char text[64];
+    std::snprintf(text, sizeof text, "%a", x);
+    return text;
+}
+
+bool contains(double centre, double half, double x)
+{
+    const Exact offset = Exact(x) - Exact(centre);
+    return offset <= Exact(half) && -offset <= Exact(half);
+}
+
+} // namespace
+
+void require_dyadic_weights(const DeformableSurface& surface)
+{
+    const Weights& weights = surface.weights;
+    if (weights.vertex_count() != surface.mesh.vertices.size())
+        refuse("the weights are not those of the mesh");
+    for (std::size_t k = 0; k < weights.vertex_count(); ++k) {
+        const Weights::Row row = weights.of(k);
+        std::int64_t units = 0;
+        for (std::size_t i = 0; i < row.node.size(); ++i) {
+            const double scaled = row.weight[i] * 0x1p53;
+            if (!(scaled >= 1 && scaled <= 0x1p53) || scaled != std::floor(scaled))
+                refuse("vertex " + std::to_string(k) + ": weight " + hex(row.weight[i]) + " is not a positive multiple of 2^-53 up to 1");
+            if (row.node[i] >= weights.node_count || (i > 0 && row.node[i] <= row.node[i - 1]))
+                refuse("vertex " + std::to_string(k) + ": simulation nodes do not ascend or are out of range");
+            units += static_cast<std::int64_t>(scaled); // fewer than 2^10 terms of at most 2^53 each could overflow,
+            if (units > std::int64_t{1} << 53)          // so the sum is cut off here
+                refuse("vertex " + std::to_string(k) + ": weights sum to more than 1");
+        }
+        if (units != std::int64_t{1} << 53)
+            refuse("vertex " + std::to_string(k) + ": weights do not sum to exactly 1");
+    }
+}
+
+void require_tree(const DeformableSurface& surface, const Bvh& bvh)
+{
+    const std::size_t triangles = surface.mesh.triangles.size();
+    if (bvh.triangle.size() != triangles || bvh.bvs.empty() != (triangles == 0))
+        refuse("the BVH is not over the mesh's triangles");
+    std::vector<bool> seen(triangles, false), child(bvh.bvs.size(), false);
+    for (std::uint32_t t : bvh.triangle) {
+        if (t >= triangles || seen[t])
+            refuse("the BVH's triangles are not a permutation of the mesh's");
+        seen[t] = true;
+    }
+    for (std::size_t i = 0; i < bvh.bvs.size(); ++i) {
+        const Bv& bv = bvh.bvs[i];
+        const std::string name = "BV " + std::to_string(i);
+        if (std::size_t{bv.first_triangle} + bv.triangle_count > triangles || bv.triangle_count == 0)
+            refuse(name + " has triangles out of range");
+        if (i == 0 && bv.triangle_count != triangles)
+            refuse("the root does not hold every triangle");
+        if (std::size_t{bv.first_interval} + bv.interval_count > bvh.node.size() || bvh.l.size() != bvh.node.size() || bvh.h.size() != bvh.node.size())
+            refuse(name + " has weight intervals out of range");
+        if (bv.is_leaf())
+            continue;
+        if (bv.first_child <= i || std::size_t{bv.first_child} + 1 >= bvh.bvs.size() || child[bv.first_child] || child[bv.first_child + 1])
+            refuse(name + " has no children of its own after it");
+        child[bv.first_child] = child[bv.first_child + 1] = true;
+        const Bv &left = bvh.bvs[bv.first_child], &right = bvh.bvs[bv.first_child + 1];
+        if (left.first_triangle != bv.first_triangle || right.first_triangle != left.first_triangle + left.triangle_count ||
+            left.triangle_count + right.triangle_count != bv.triangle_count)
+            refuse(name + " does not hold its children's triangles");
+    }
+    for (std::size_t i = 1; i < bvh.bvs.size(); ++i)
+        if (!child[i])
+            refuse("BV " + std::to_string(i) + " has no parent");
+}
+
+std::vector<std::uint32_t> vertices_of(const DeformableSurface& surface, const Bvh& bvh, std::size_t bv)
+{
+    std::vector<std::uint32_t> vertices;
+    for (std::uint32_t t = 0; t < bvh.bvs[bv].triangle_count; ++t)
+        for (std::uint32_t v : surface.mesh.triangles[bvh.triangle[bvh.bvs[bv].first_triangle + t]])
+            vertices.push_back(v);
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    return vertices;
+}
+
+std::string rest_data_fault(const DeformableSurface& surface, const Bvh& bvh, std::size_t index, std::span<const std::uint32_t> vertices)
+{
+    const Bv& bv = bvh.bvs[index];
+    const RestBv rest = bvh.rest(index);
+    if (rest.node.empty())
+        return "no simulation node is listed";
+    for (std::size_t j = 0; j < rest.node.size(); ++j) {
+        const std::string where = "simulation node " + std::to_string(rest.node[j]);
+        if (rest.node[j] >= surface.weights.node_count || (j > 0 && rest.node[j] <= rest.node[j - 1]))
+            return "simulation nodes do not ascend or are out of range";
+        if (!(0 <= rest.space.l[j] && rest.space.l[j] <= rest.space.h[j] && rest.space.h[j] <= 1))
+            return where + ": not 0 <= l <= h <= 1 but l = " + hex(rest.space.l[j]) + ", h = " + hex(rest.space.h[j]);
+    }
+    // Extremes of the box first, in doubles, which are exact; then one exact comparison for each side of each axis.
+    for (int axis = 0; axis < 3; ++axis) {
+        double low = surface.mesh.vertices[vertices[0]][axis], high = low;
+        for (std::uint32_t k : vertices) {
+            low = std::min(low, surface.mesh.vertices[k][axis]);
+            high = std::max(high, surface.mesh.vertices[k][axis]);
+        }
+        for (double x : {low, high})
+            if (!contains(bv.centre[axis], bv.half[axis], x))
+                return "the rest box does not contain " + std::string(1, static_cast<char>('x' + axis)) + " = " + hex(x);
+    }
+    std::vector<std::uint32_t> influenced(rest.node.size(), 0); // how many vertices a node influences
+    for (std::uint32_t k : vertices) {
+        const Weights::Row row = surface.weights.of(k);
+        if (row.node.size() > bv.vertex_influences)
+            return "vertex " + std::to_string(k) + " has more influences than the BV says";
+        for (std::size_t i = 0; i < row.node.size(); ++i) {
+            const auto it = std::lower_bound(rest.node.begin(), rest.node.end(), row.node[i]);
+            const std::string where = "vertex " + std::to_string(k) + ", simulation node " + std::to_string(row.node[i]);
+            if (it == rest.node.end() || *it != row.node[i])
+                return where + ": influences the BV but is not listed";
+            const auto j = static_cast<std::size_t>(it - rest.node.begin());
+            if (!(rest.space.l[j] <= row.weight[i] && row.weight[i] <= rest.space.h[j]))
+                return where + ": weight " + hex(row.weight[i]) + " lies outside [" + hex(rest.space.l[j]) + ", " + hex(rest.space.h[j]) + "]";
+            ++influenced[j];
+        }
+    }
+    for (std::size_t j = 0; j < rest.node.size(); ++j)
+        if (influenced[j] < vertices.size() && rest.space.l[j] > 0)
+            return "simulation node " + std::to_string(rest.node[j]) + ": l = " + hex(rest.space.l[j]) + ", but a vertex has weight 0";
+    return {};
+}
+
+} // namespace cinch::exact

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "toolkit/bounds/method.hpp"
+#include "toolkit/hierarchy/bvh.hpp"
+
+namespace cinch::exact {
+
+/// What has to hold for a bound to be proven; bits of a mask.
+enum Statement : std::uint8_t {
+    rest_data = 1,         ///< the BV's rest box and weight intervals hold all its vertices
+    weight_space = 2,      ///< bound ≥ exact maximum over W' of the exact extrema of the deformed rest box (not for `vertices`)
+    exact_vertices = 4,    ///< bound ≥ every vertex deformed in real arithmetic
+    computed_vertices = 8, ///< bound ≥ every vertex as evaluate_vertex computes it
+};
+std::string name_of(Statement statement);
+
+struct Violation {
+    std::size_t bv = 0;
+    int direction = -1; ///< place in axes_of(k): 2a along axis a, 2a + 1 against it; −1 where all directions are concerned
+    Statement statement = rest_data;
+    std::string detail; ///< what is violated by how much, exactly: fractions p/q
+};
+
+/// How much tightness a bound gives away, averaged over a BV's directions (axes scaled to unit length), in units of length.
+/// The four add up to bound − true support.
+struct Loss {
+    double box = 0;      ///< true support → rest boxes deformed with the vertices' actual weights
+    double interval = 0; ///< actual weights → anything in W'
+    double corner = 0;   ///< W' → the corner that the method takes
+    double rounding = 0; ///< real arithmetic → proven double
+};
+
+struct BvReport {
+    double true_radius = 0, bound_radius = 0; ///< half diagonals of the axis-aligned boxes
+    Loss loss;
+};
+
+struct FrameVerdict {
+    std::vector<std::uint8_t> failed; ///< per BV and direction, place bv·k + d: mask of violated statements, 0 = proven
+    std::vector<BvReport> bvs;
+    std::size_t decided_by_filter = 0; ///< bounds that interval arithmetic settled; the rest took exact arithmetic
+    std::vector<Violation> examples;   ///< the first few, in order of BV
+};
+
+/// Proves the bounds of one surface's BVH, frame by frame, in exact arithmetic behind an interval filter. It reads the
+/// toolkit's data and repeats none of its algorithms. Both statements of the guarantee are decided for every BV and direction.
+class Verifier {
+public:
+    /// Checks the rest data of every BV at once. Throws std::invalid_argument if the tree is no tree over the mesh's triangles,
+    /// or the weights are not dyadic and convex. Keeps references to both.
+    Verifier(const DeformableSurface& surface, const Bvh& bvh);
+
+    /// Why rest data fail, per BV; empty strings where they hold.
+    const std::vector<std::string>& rest_data_faults() const { return faults_; }
+
+    /// `supports` as refit() fills them for this frame. Results do not depend on the thread count.
+    FrameVerdict check(std::span<const AffineMap> maps, Method method, int kdop, std::span<const double> supports) const;
+
+private:
+    const DeformableSurface& surface_;
+    const Bvh& bvh_;
+    std::vector<std::vector<std::uint32_t>> vertices_; // of each BV, each once
+    std::vector<std::string> faults_;
+};
+
+} // namespace cinch::exact

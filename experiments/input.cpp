@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/input.hpp"
+
+#include <cmath>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "experiments/report/number.hpp"
+#include "toolkit/deform/motion.hpp"
+#include "toolkit/deform/sample_nodes.hpp"
+#include "toolkit/surface/character.hpp"
+#include "toolkit/surface/read_mesh.hpp"
+#include "toolkit/surface/shapes.hpp"
+
+namespace cinch {
+namespace {
+
+struct Shape {
+    const char* name;
+    TriangleMesh (*make)();
+    std::size_t nodes; // as in the paper
+};
+
+TriangleMesh santa_fine() { return subdivide(subdivide(santa(2857))); }
+
+constexpr Shape shapes[] = {
+    {"brain", [] { return brain(30000); }, 509},        {"brain-3500", [] { return brain(3500); }, 509},
+    {"brain-30000", [] { return brain(30000); }, 509},  {"brain-145000", [] { return brain(145000); }, 509},
+    {"santa", [] { return santa(2857); }, 115},         {"santa-2857", [] { return santa(2857); }, 115},
+    {"santa-45682", santa_fine, 115},                   {"fish", [] { return fish(8000); }, 96},
+    {"fish-8000", [] { return fish(8000); }, 96},
+};
+
+void refuse_options(const InputOptions& o, bool scripted, bool clips, bool sampled)
+{
+    auto refuse = [](bool given, const char* option, const char* needs) {
+        if (given)
+            throw InputError(fmt::format("{} needs {}", option, needs));
+    };
+    if (!scripted) {
+        refuse(o.nodes != 0, "--nodes", "a shape or a mesh without --weights; this input brings its own simulation nodes");
+        refuse(o.support != 0, "--support", "a shape or a mesh without --weights; this input brings its own weights");
+        refuse(!o.motion.empty(), "--motion", "a shape or a mesh without --transforms; this input brings its own motion");
+    }
+    if (!clips)
+        refuse(!o.clip.empty(), "--clip", "a skinned character (.glb, .gltf) or --transforms");
+    if (!sampled)
+        refuse(o.fps != 0, "--fps", "a skinned character (.glb, .gltf)");
+}
+
+// `frames` of the clip, evenly spread, the last one included; 0 keeps all.
+void thin_out(Clip& clip, std::size_t frames)
+{
+    const std::size_t all = clip.frames.size();
+    if (frames == 0 || frames >= all)
+        return;
+    Clip kept;
+    kept.name = clip.name;
+    for (std::size_t i = 0; i < frames; ++i) {
+        const std::size_t f = frames == 1 ? all - 1 : (i * (all - 1) + (frames - 1) / 2) / (frames - 1);
+        kept.time_s.push_back(clip.time_s[f]);
+        kept.frames.push_back(std::move(clip.frames[f]));
+    }
+    clip = std::move(kept);
+}
+
+void script(Input& input, const InputOptions& options, std::size_t default_nodes)
+{
+    refuse_options(options, true, false, false);
+    const std::string motion_name = options.motion.empty() ? "strong" : options.motion;
+    const auto motion = named_motion(motion_name);
+    if (!motion)
+        throw InputError(fmt::format("--motion {}: unknown; known are {}", motion_name, motion_names));
+    centre_and_scale(input.surface.mesh, 1.2);
+    const std::size_t wanted = options.nodes ? options.nodes : default_nodes;
+    const SimulationNodes nodes = sample_nodes(input.surface.mesh, wanted, options.seed);
+    std::size_t alone = 0;
+    input.surface.weights = kernel_weights(input.surface.mesh, nodes, options.support > 0 ? options.support : 2, &alone);
+    input.clip = scripted_clip(*motion, nodes.position, options.frames ? options.frames : 4);
+    input.clip.name = motion_name;
+    if (nodes.position.size() < wanted)
+        input.report.push_back(fmt::format("only {} distinct places for {} simulation nodes", grouped(nodes.position.size()), grouped(wanted)));
+    if (alone)
+        input.report.push_back(fmt::format("{} beyond the reach of every simulation node; each follows its nearest one", counted(alone, "vertex lies", "vertices lie")));
+}
+
+void report_weights(Input& input, const WeightReport& weights)
+{
+    if (weights.off_by_a_thousandth)
+        input.report.push_back(fmt::format("{} of {} had weights that sum to less than 0.999 or more than 1.001 (sums {:.4f} to {:.4f}); normalised",
+                                           grouped(weights.off_by_a_thousandth), counted(weights.vertices, "vertex", "vertices"),
+                                           weights.least_sum, weights.greatest_sum));
+    if (weights.without_weight)
+        input.report.push_back(fmt::format("{} no weight at all; bound to the first simulation node named", counted(weights.without_weight, "vertex has", "vertices have")));
+}
+
+template <class Named> const Named& choose_clip(const std::vector<Named>& clips, const std::string& wanted, const std::string& file)
+{
+    std::string known;
+    for (const Named& clip : clips) {
+        if (clip.name == wanted || wanted.empty())
+            return clip;
+        known += (known.empty() ? "" : ", ") + clip.name;
+    }
+    throw InputError::in_file(file, fmt::format("has no clip '{}'; it has {}", wanted, known.empty() ? "none" : known));
+}
+
+void load_character(Input& input, const InputOptions& options)
+{
+    refuse_options(options, false, true, true);
+    if (!options.weights.empty() || !options.transforms.empty())
+        throw InputError("--weights and --transforms need a mesh (OBJ, OFF, PLY, STL)");
+    Character character = read_gltf(options.input);
+    if (character.animations.empty() && options.clip.empty())
+        input.clip = rest_pose(character);
+    else
+        input.clip = sample(character, choose_clip(character.animations, options.clip, options.input), options.fps > 0 ? options.fps : 30);
+    if (character.animations.size() > 1 && options.clip.empty())
+        input.report.push_back(fmt::format("{} clips; the first is used, --clip chooses another", character.animations.size()));
+    thin_out(input.clip, options.frames);
+    input.report.insert(input.report.end(), character.notes.begin(), character.notes.end());
+    WeightReport weights;
+    input.surface.weights = to_dyadic(character.influences, &weights);
+    input.surface.mesh = std::move(character.mesh);
+    report_weights(input, weights);
+}
+
+void load_skin_text(Input& input, const InputOptions& options)
+{
+    refuse_options(options, false, true, false);
+    if (options.weights.empty() || options.transforms.empty())
+        throw InputError("--weights and --transforms go together");
+    const Influences influences = read_weights_text(options.weights, input.surface.mesh.vertices.size());
+    input.clip = choose_clip(read_clips_text(options.transforms, influences.node_count), options.clip, options.transforms);
+    thin_out(input.clip, options.frames);
+    WeightReport weights;
+    input.surface.weights = to_dyadic(influences, &weights);
+    report_weights(input, weights);
+}
+
+bool is_character_file(const std::filesystem::path& path)
+{
+    std::string extension = path.extension().string();
+    for (char& c : extension)
+        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return extension == ".glb" || extension == ".gltf";
+}
+
+} // namespace
+
+std::vector<std::string> shape_names()
+{
+    std::vector<std::string> names;
+    for (const Shape& shape : shapes)
+        names.emplace_back(shape.name);
+    return names;
+}
+
+Input load_input(const InputOptions& options)
+{
+    Input input;
+    input.name = options.input;
+    const Shape* shape = nullptr;
+    for (const Shape& s : shapes)
+        if (options.input == s.name)
+            shape = &s;
+    if (shape) {
+        if (!options.weights.empty() || !options.transforms.empty())
+            throw InputError("--weights and --transforms need a mesh file");
+        input.surface.mesh = shape->make();
+        script(input, options, shape->nodes);
+    } else if (is_character_file(options.input)) {
+        load_character(input, options);
+    } else if (is_mesh_file(options.input)) {
+        input.surface.mesh = read_mesh(options.input);
+        if (input.surface.mesh.vertices.empty() || input.surface.mesh.triangles.empty())
+            throw InputError::in_file(options.input, "has no triangles; there is nothing to bound");
+        if (options.weights.empty() && options.transforms.empty())
+            script(input, options, 100);
+        else
+            load_skin_text(input, options);
+    } else {
+        throw InputError::in_file(options.input, std::filesystem::exists(options.input)
+                                                     ? "unknown format; known are .obj, .off, .ply, .stl, .glb and .gltf"
+                                                     : fmt::format("no such file, and no shape of that name ({})", fmt::join(shape_names(), ", ")));
+    }
+    if (input.surface.mesh.triangles.empty())
+        throw InputError::in_file(options.input, "has no skinned triangles; there is nothing to bound");
+    const auto& weights = input.surface.weights;
+    input.report.insert(input.report.begin(),
+                        fmt::format("{}: {}, {}, {}, {:.1f} influences per vertex; motion '{}', {}", input.name,
+                                    counted(input.surface.mesh.vertices.size(), "vertex", "vertices"),
+                                    counted(input.surface.mesh.triangles.size(), "triangle", "triangles"),
+                                    counted(weights.node_count, "simulation node", "simulation nodes"),
+                                    static_cast<double>(weights.node.size()) / static_cast<double>(weights.vertex_count()), input.clip.name,
+                                    counted(input.clip.frames.size(), "frame", "frames")));
+    return input;
+}
+
+} // namespace cinch

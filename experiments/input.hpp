@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "toolkit/deform/surface.hpp"
+#include "toolkit/surface/skin.hpp"
+
+namespace cinch {
+
+/// What the user asked to be deformed, and how. Empty strings and zeros mean "not given".
+struct InputOptions {
+    std::string input = "brain";
+    std::size_t nodes = 0;
+    double support = 0;
+    std::string motion;
+    std::string weights, transforms;
+    std::string clip;
+    double fps = 0;
+    std::size_t frames = 0;
+    std::uint64_t seed = 0;
+};
+
+/// A surface with the frames that deform it.
+struct Input {
+    std::string name;
+    DeformableSurface surface;
+    Clip clip;
+    std::vector<std::string> report; ///< one line each: what was loaded, and what was changed or left out
+};
+
+/// Names of the shapes that come with the program.
+std::vector<std::string> shape_names();
+
+/// Loads a shipped shape, a mesh (with scripted motion, or with weights and transforms), or a skinned character.
+/// Throws InputError, one line, for anything that cannot be used, options that do not apply included.
+Input load_input(const InputOptions& options);
+
+} // namespace cinch

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/verify.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+
+#include "experiments/report/interrupt.hpp"
+#include "experiments/report/progress.hpp"
+#include "experiments/verify_report.hpp"
+#include "toolkit/deform/dyadic.hpp"
+#include "toolkit/hierarchy/refit.hpp"
+
+namespace cinch {
+namespace {
+
+void damage(Bvh& bvh, Sabotage sabotage)
+{
+    for (std::size_t i = 0; i < bvh.node.size(); ++i) { // the first interval with room in it, so one of the root's if there is one
+        if (!(bvh.l[i] < bvh.h[i]))
+            continue;
+        if (sabotage == Sabotage::swap_interval)
+            std::swap(bvh.l[i], bvh.h[i]);
+        else if (sabotage == Sabotage::lower_h)
+            bvh.h[i] -= weight_unit;
+        return;
+    }
+}
+
+LadderTotals check_ladder(const Bvh& bvh, const DeformableSurface& surface, std::span<const AffineMap> maps, const VerifyOptions& options,
+                          Rounding rounding)
+{
+    std::vector<double> looser, tighter(bvh.bvs.size() * static_cast<std::size_t>(options.kdop));
+    LadderTotals totals;
+    for (const Method method : {Method::convex, Method::eq12, Method::limited}) {
+        refit(bvh, surface, maps, {method, options.kdop, rounding}, tighter);
+        for (std::size_t i = 0; i < looser.size(); ++i)
+            totals.broken += !(tighter[i] <= looser[i]);
+        totals.compared += looser.size();
+        looser = tighter;
+    }
+    return totals;
+}
+
+void add(const Bvh& bvh, const exact::FrameVerdict& frame, int kdop, VerifyTotals& totals)
+{
+    const auto k = static_cast<std::size_t>(kdop);
+    for (std::size_t i = 0; i < totals.levels.size(); ++i) {
+        LevelTotals& level = totals.levels[i];
+        for (std::size_t bv = bvh.level[i]; bv < bvh.level[i + 1]; ++bv) {
+            const auto masks = std::span(frame.failed).subspan(bv * k, k);
+            const auto violated = static_cast<std::size_t>(std::count_if(masks.begin(), masks.end(), [](auto mask) { return mask != 0; }));
+            level.violated += violated;
+            level.proven += k - violated;
+            const exact::BvReport& report = frame.bvs[bv];
+            if (!(report.true_radius > 0))
+                continue;
+            const double ratio = report.bound_radius / report.true_radius;
+            ++level.measured;
+            level.ratio_sum += ratio;
+            level.ratio_max = std::max(level.ratio_max, ratio);
+            level.loss.box += report.loss.box / report.true_radius;
+            level.loss.interval += report.loss.interval / report.true_radius;
+            level.loss.corner += report.loss.corner / report.true_radius;
+            level.loss.rounding += report.loss.rounding / report.true_radius;
+        }
+    }
+    for (const exact::Violation& violation : frame.examples) {
+        if (totals.examples.size() >= 10)
+            break;
+        const auto above = std::upper_bound(bvh.level.begin(), bvh.level.end(), static_cast<std::uint32_t>(violation.bv));
+        totals.examples.push_back({totals.frames, static_cast<std::size_t>(above - bvh.level.begin() - 1), violation});
+    }
+    totals.decided_by_filter += frame.decided_by_filter;
+    ++totals.frames;
+}
+
+} // namespace
+
+int verify(const VerifyOptions& options)
+{
+    const auto start = std::chrono::steady_clock::now();
+    const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+    const Input input = load_input(options.input);
+    Bvh bvh = build_bvh(input.surface, options.leaf);
+    damage(bvh, options.sabotage);
+    const Rounding rounding = options.sabotage == Sabotage::no_rounding ? Rounding::plain : Rounding::proven;
+    const exact::Verifier verifier(input.surface, bvh);
+
+    VerifyTotals totals;
+    totals.frames_wanted = input.clip.frames.size();
+    for (std::size_t i = 0; i + 1 < bvh.level.size(); ++i) {
+        LevelTotals level;
+        level.bvs = bvh.level[i + 1] - bvh.level[i];
+        for (std::size_t bv = bvh.level[i]; bv < bvh.level[i + 1]; ++bv)
+            level.nodes += bvh.bvs[bv].interval_count;
+        totals.levels.push_back(level);
+    }
+    catch_interrupt();
+    {
+        Progress progress("verifying frames", totals.frames_wanted);
+        std::vector<double> supports(bvh.bvs.size() * static_cast<std::size_t>(options.kdop));
+        for (const auto& maps : input.clip.frames) {
+            if (interrupted())
+                break;
+            refit(bvh, input.surface, maps, {options.method, options.kdop, rounding}, supports);
+            add(bvh, verifier.check(maps, options.method, options.kdop, supports), options.kdop, totals);
+            const LadderTotals ladder = check_ladder(bvh, input.surface, maps, options, rounding);
+            totals.ladder.compared += ladder.compared;
+            totals.ladder.broken += ladder.broken;
+            progress.done(totals.frames);
+        }
+    }
+    for (const LevelTotals& level : totals.levels) {
+        totals.proven += level.proven;
+        totals.violated += level.violated;
+    }
+    totals.bounds = totals.proven + totals.violated;
+    totals.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+
+    const Provenance from = provenance(threads, options.input.seed);
+    (options.json ? print_json : print_table)(input, options, totals, from);
+    if (totals.violated || totals.ladder.broken)
+        return 1;
+    if (totals.frames < totals.frames_wanted) {
+        fmt::print(stderr, "cinch: interrupted after {} of {} frames\n", totals.frames, totals.frames_wanted);
+        return 130;
+    }
+    return 0;
+}
+
+} // namespace cinch

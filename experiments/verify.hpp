@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "experiments/input.hpp"
+#include "toolkit/bounds/method.hpp"
+
+namespace cinch {
+
+/// Damage done on purpose, to see the verifier find it.
+enum class Sabotage { none, no_rounding, swap_interval, lower_h };
+
+struct VerifyOptions {
+    InputOptions input;
+    Method method = Method::limited;
+    int kdop = 6;
+    std::size_t leaf = 1; ///< triangles
+    int threads = 0;      ///< 0: as many as the machine has
+    bool json = false;
+    Sabotage sabotage = Sabotage::none;
+};
+
+/// Refits every BV in every frame and proves every bound. Returns the exit status: 0 all proven, 1 a check failed, 130 interrupted.
+int verify(const VerifyOptions& options);
+
+} // namespace cinch

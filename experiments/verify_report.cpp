@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/verify_report.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "experiments/report/number.hpp"
+#include "experiments/report/table.hpp"
+
+namespace cinch {
+namespace {
+
+double rate(std::size_t part, std::size_t whole) { return whole ? static_cast<double>(part) / static_cast<double>(whole) : 0; }
+
+struct LevelMeans {
+    double n, ratio, box, interval, corner, rounding;
+};
+
+LevelMeans means(const LevelTotals& level)
+{
+    const double m = level.measured ? static_cast<double>(level.measured) : 1;
+    return {level.bvs ? level.nodes / static_cast<double>(level.bvs) : 0, level.ratio_sum / m, level.loss.box / m, level.loss.interval / m,
+            level.loss.corner / m, level.loss.rounding / m};
+}
+
+std::string direction_name(int kdop, int direction)
+{
+    if (direction < 0)
+        return "all directions";
+    const Axis& axis = axes_of(kdop)[static_cast<std::size_t>(direction / 2)];
+    const int sign = direction % 2 ? -1 : 1;
+    return fmt::format("direction ({}, {}, {})", sign * axis[0], sign * axis[1], sign * axis[2]);
+}
+
+} // namespace
+
+void print_table(const Input& input, const VerifyOptions& options, const VerifyTotals& totals, const Provenance& from)
+{
+    for (const std::string& line : input.report)
+        fmt::print("{}\n", line);
+    fmt::print("method {}, {}-DOP, at most {} per leaf; {} of {}\n\n", name_of(options.method), options.kdop,
+               counted(options.leaf, "triangle", "triangles"), totals.frames, counted(totals.frames_wanted, "frame", "frames"));
+
+    std::vector<std::vector<std::string>> rows;
+    for (std::size_t i = 0; i < totals.levels.size(); ++i) {
+        const LevelTotals& level = totals.levels[i];
+        const LevelMeans mean = means(level);
+        rows.push_back({std::to_string(i), grouped(level.bvs), fmt::format("{:.1f}", mean.n), grouped(level.proven), grouped(level.violated),
+                        fmt::format("{:.3f}", mean.ratio), fmt::format("{:.3f}", level.ratio_max), fmt::format("{:.3f}", mean.box),
+                        fmt::format("{:.3f}", mean.interval), fmt::format("{:.3f}", mean.corner), fmt::format("{:.0e}", mean.rounding)});
+    }
+    fmt::print("{}\n", table({"level", "BVs", "mean n", "proven", "violated", "ratio", "max", "box", "interval", "corner", "rounding"}, rows));
+    fmt::print("ratio: bound radius / true radius, mean and maximum. box, interval, corner, rounding: what the bound\n"
+               "gives away per direction, and why, as a share of the true radius.\n\n");
+
+    for (const auto& example : totals.examples)
+        fmt::print("violated: frame {}, level {}, BV {}, {}: {}: {}\n", example.frame, example.level, example.violation.bv,
+                   direction_name(options.kdop, example.violation.direction), exact::name_of(example.violation.statement),
+                   example.violation.detail);
+    if (!totals.examples.empty())
+        fmt::print("\n");
+    if (totals.ladder.broken)
+        fmt::print("order of the ladder: limited <= eq12 <= convex broken {} times in {}\n", grouped(totals.ladder.broken), grouped(totals.ladder.compared));
+    else
+        fmt::print("order of the ladder: limited <= eq12 <= convex in all of {} comparisons\n", grouped(totals.ladder.compared));
+    fmt::print("{} bounds, {} proven, {} violated\n", grouped(totals.bounds), grouped(totals.proven), grouped(totals.violated));
+    fmt::print("{}, filter hit rate {:.4f}\n{}\n", duration(totals.seconds), rate(totals.decided_by_filter, totals.bounds), describe(from));
+}
+
+void print_json(const Input& input, const VerifyOptions& options, const VerifyTotals& totals, const Provenance& from)
+{
+    using nlohmann::json;
+    auto base = [&] {
+        return json{{"experiment", "verify"}, {"input", input.name}, {"method", name_of(options.method)}, {"kdop", options.kdop}};
+    };
+    auto print = [](const json& record) { fmt::print("{}\n", record.dump(-1, ' ', false, json::error_handler_t::replace)); };
+    for (std::size_t i = 0; i < totals.levels.size(); ++i) {
+        const LevelTotals& level = totals.levels[i];
+        const LevelMeans mean = means(level);
+        json record = base();
+        record.update({{"level", i}, {"bvs", level.bvs}, {"mean_n", mean.n}, {"proven", level.proven}, {"violated", level.violated},
+                       {"mean_ratio", mean.ratio}, {"max_ratio", level.ratio_max}, {"box_loss", mean.box}, {"interval_loss", mean.interval},
+                       {"corner_loss", mean.corner}, {"rounding_loss", mean.rounding}});
+        print(record);
+    }
+    for (const auto& example : totals.examples) {
+        json record = base();
+        record.update({{"frame", example.frame}, {"level", example.level}, {"bv", example.violation.bv}, {"direction", example.violation.direction},
+                       {"violated_statement", exact::name_of(example.violation.statement)}, {"detail", example.violation.detail}});
+        print(record);
+    }
+    json record = base();
+    record.update({{"frames", totals.frames}, {"leaf_triangles", options.leaf}, {"vertices", input.surface.mesh.vertices.size()},
+                   {"triangles", input.surface.mesh.triangles.size()}, {"nodes", input.surface.weights.node_count}, {"motion", input.clip.name},
+                   {"bounds", totals.bounds}, {"proven", totals.proven}, {"violated", totals.violated},
+                   {"ladder_compared", totals.ladder.compared}, {"ladder_broken", totals.ladder.broken},
+                   {"filter_hit_rate", rate(totals.decided_by_filter, totals.bounds)}, {"seconds", totals.seconds},
+                   {"complete", totals.frames == totals.frames_wanted}, {"load_report", input.report},
+                   {"version", from.version}, {"commit", from.commit}, {"compiler", from.compiler}, {"flags", from.flags},
+                   {"cpu", from.cpu}, {"simd_target", from.simd}, {"threads", from.threads}, {"seed", from.seed}});
+    print(record);
+}
+
+} // namespace cinch

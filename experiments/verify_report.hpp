@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "exact/verifier.hpp"
+#include "experiments/report/provenance.hpp"
+#include "experiments/verify.hpp"
+
+namespace cinch {
+
+/// Sums over the BVs of one level and all frames so far.
+struct LevelTotals {
+    std::size_t bvs = 0;          ///< in the level
+    double nodes = 0;             ///< sum of n over these
+    std::size_t proven = 0, violated = 0;
+    std::size_t measured = 0;     ///< BVs × frames with a true radius > 0
+    double ratio_sum = 0, ratio_max = 0;
+    exact::Loss loss;             ///< sum over the measured, in units of their true radius
+};
+
+/// limited ≤ eq12 ≤ convex, compared on the doubles themselves, for every BV, direction and frame.
+struct LadderTotals {
+    std::size_t compared = 0, broken = 0;
+};
+
+struct VerifyTotals {
+    std::size_t frames = 0, frames_wanted = 0;
+    std::size_t bounds = 0, proven = 0, violated = 0, decided_by_filter = 0;
+    double seconds = 0;
+    std::vector<LevelTotals> levels;
+    LadderTotals ladder;
+    struct Example {
+        std::size_t frame;
+        std::size_t level;
+        exact::Violation violation;
+    };
+    std::vector<Example> examples; ///< the first violations
+};
+
+void print_table(const Input& input, const VerifyOptions& options, const VerifyTotals& totals, const Provenance& from);
+void print_json(const Input& input, const VerifyOptions& options, const VerifyTotals& totals, const Provenance& from);
+
+} // namespace cinch

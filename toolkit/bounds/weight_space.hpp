@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace cinch {
+
+/// W' = { w : Σ_j w_j = 1, l_j ≤ w_j ≤ h_j }, the limited convex weight space of one BV (Eq. 9). A view; owns nothing.
+struct WeightSpace {
+    std::span<const double> l, h; ///< multiples of 2^-53 in [0, 1], 0 ≤ l ≤ h
+};
+
+/// Whether results carry the error terms of rounding.hpp and so are proven bounds. `plain` is double arithmetic as it
+/// comes, which falls below the exact value about every fourth time; it exists to measure what the proof costs.
+enum class Rounding { proven, plain };
+
+/// D(λ) = λ + Σ_j [ l_j (b_j − λ) + (h_j − l_j) max(b_j − λ, 0) ] ≥ max { Σ w_j b_j : w ∈ W' } for *every* λ (weak duality).
+/// Proven: at least the exact D(λ) of the doubles given; +∞ if anything overflows. Never NaN.
+double dual_bound(WeightSpace space, std::span<const double> b, double lambda, Rounding rounding) noexcept;
+
+/// The λ whose D(λ) is the paper's Eq. 12: the second-largest b, or b itself where there is only one.
+double second_largest(std::span<const double> b) noexcept;
+
+/// The λ that minimises D up to rounding, making it the exact optimum over W': the smallest b_m with
+/// Σ_{b_j > b_m} (h_j − l_j) ≤ 1 − Σ l. Weighted quickselect, O(n) on average. `scratch` is overwritten.
+double best_lambda(WeightSpace space, std::span<const double> b, std::vector<std::pair<double, double>>& scratch);
+
+} // namespace cinch

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "toolkit/deform/evaluate.hpp"
+
+#include <tbb/parallel_for.h>
+
+namespace cinch {
+
+Vec3 evaluate_vertex(const Vec3& rest, Weights::Row row, std::span<const AffineMap> maps) noexcept
+{
+    const double x = rest[0], y = rest[1], z = rest[2];
+    double sum[3] = {0, 0, 0};
+    for (std::size_t i = 0; i < row.node.size(); ++i) {
+        const auto& m = maps[row.node[i]].m;
+        const double w = row.weight[i];
+        for (int r = 0; r < 3; ++r)
+            sum[r] = sum[r] + w * (((m[r][0] * x + m[r][1] * y) + m[r][2] * z) + m[r][3]);
+    }
+    return {sum[0], sum[1], sum[2]};
+}
+
+void evaluate(std::span<const Vec3> rest, const Weights& weights, std::span<const AffineMap> maps, std::span<Vec3> out)
+{
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rest.size(), 1024), [&](const auto& range) {
+        for (std::size_t k = range.begin(); k < range.end(); ++k)
+            out[k] = evaluate_vertex(rest[k], weights.of(k), maps);
+    });
+}
+
+} // namespace cinch

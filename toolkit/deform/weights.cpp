@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "toolkit/deform/weights.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "toolkit/deform/dyadic.hpp"
+
+namespace cinch {
+
+Weights to_dyadic(const Influences& influences, WeightReport* report)
+{
+    Weights out;
+    out.node_count = influences.node_count;
+    WeightReport counted;
+    counted.vertices = influences.row.size() - 1;
+    std::vector<double> weights;
+    for (std::size_t k = 0; k + 1 < influences.row.size(); ++k) {
+        const std::size_t first = influences.row[k], last = influences.row[k + 1];
+        weights.assign(influences.weight.begin() + static_cast<std::ptrdiff_t>(first), influences.weight.begin() + static_cast<std::ptrdiff_t>(last));
+        const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+        counted.least_sum = k == 0 ? sum : std::min(counted.least_sum, sum);
+        counted.greatest_sum = k == 0 ? sum : std::max(counted.greatest_sum, sum);
+        counted.off_by_a_thousandth += !(sum >= 0.999 && sum <= 1.001);
+        if (std::all_of(weights.begin(), weights.end(), [](double w) { return w == 0; })) {
+            ++counted.without_weight;
+            weights.front() = 1;
+        }
+        round_dyadic(weights);
+        for (std::size_t i = 0; i < weights.size(); ++i)
+            if (weights[i] > 0) {
+                out.node.push_back(influences.node[first + i]);
+                out.weight.push_back(weights[i]);
+            }
+        out.row.push_back(static_cast<std::uint32_t>(out.node.size()));
+    }
+    if (report)
+        *report = counted;
+    return out;
+}
+
+} // namespace cinch

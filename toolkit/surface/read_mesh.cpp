@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "toolkit/surface/read_mesh.hpp"
+
+#include <cctype>
+#include <fstream>
+#include <limits>
+
+namespace cinch {
+
+std::string read_bytes(const std::filesystem::path& path)
+{
+    const std::string name = path.string();
+    std::error_code error;
+    const auto status = std::filesystem::status(path, error);
+    if (!std::filesystem::exists(status))
+        throw InputError::in_file(name, "no such file");
+    if (std::filesystem::is_directory(status))
+        throw InputError::in_file(name, "is a directory, not a file");
+    std::ifstream in(path, std::ios::binary);
+    if (!in)
+        throw InputError::in_file(name, "cannot be opened for reading");
+    std::string bytes(std::istreambuf_iterator<char>(in), {});
+    if (in.bad())
+        throw InputError::in_file(name, "reading failed after " + std::to_string(bytes.size()) + " bytes");
+    if (bytes.empty())
+        throw InputError::in_file(name, "the file is empty");
+    return bytes;
+}
+
+static std::string lower_extension(const std::filesystem::path& path)
+{
+    std::string extension = path.extension().string();
+    for (char& c : extension)
+        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return extension;
+}
+
+using Parser = TriangleMesh (*)(std::string_view, const std::string&);
+
+static Parser parser_for(const std::filesystem::path& path)
+{
+    const std::string extension = lower_extension(path);
+    return extension == ".obj"   ? parse_obj
+           : extension == ".off" ? parse_off
+           : extension == ".ply" ? parse_ply
+           : extension == ".stl" ? parse_stl
+                                 : nullptr;
+}
+
+bool is_mesh_file(const std::filesystem::path& path) { return parser_for(path) != nullptr; }
+
+TriangleMesh read_mesh(const std::filesystem::path& path)
+{
+    const Parser parse = parser_for(path);
+    if (!parse)
+        throw InputError::in_file(path.string(), "unknown mesh format '" + path.extension().string() +
+                                                     "'; known are .obj, .off, .ply and .stl");
+    const std::string bytes = read_bytes(path);
+    if (bytes.size() > std::numeric_limits<std::uint32_t>::max())
+        throw InputError::in_file(path.string(), "is larger than 4 GiB; vertex indices have 32 bits");
+    return parse(bytes, path.string());
+}
+
+} // namespace cinch

@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: Apache-2.0
+// PLY: ascii, binary little endian, binary big endian. Elements and properties in any order; only x, y, z of `vertex`
+// and vertex_indices (or vertex_index) of `face` are used, the others are passed over.
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <optional>
+
+#include "toolkit/surface/read_mesh.hpp"
+#include "toolkit/surface/text_scan.hpp"
+
+namespace cinch {
+namespace {
+
+enum class Scalar { i8, u8, i16, u16, i32, u32, f32, f64 };
+constexpr std::size_t scalar_bytes[] = {1, 1, 2, 2, 4, 4, 4, 8};
+
+struct Property {
+    std::string name;
+    Scalar type;
+    std::optional<Scalar> list_size_type; // set for a list
+};
+
+struct Element {
+    std::string name;
+    std::uint64_t count = 0;
+    std::vector<Property> properties;
+};
+
+enum class Format { ascii, little, big };
+
+struct Header {
+    Format format = Format::ascii;
+    std::vector<Element> elements;
+    std::size_t body = 0; // the first byte after end_header and its line end
+    std::size_t body_line = 0;
+};
+
+std::optional<Scalar> scalar_named(std::string_view name)
+{
+    static constexpr std::pair<std::string_view, Scalar> names[] = {
+        {"char", Scalar::i8},   {"int8", Scalar::i8},     {"uchar", Scalar::u8},   {"uint8", Scalar::u8},
+        {"short", Scalar::i16}, {"int16", Scalar::i16},   {"ushort", Scalar::u16}, {"uint16", Scalar::u16},
+        {"int", Scalar::i32},   {"int32", Scalar::i32},   {"uint", Scalar::u32},   {"uint32", Scalar::u32},
+        {"float", Scalar::f32}, {"float32", Scalar::f32}, {"double", Scalar::f64}, {"float64", Scalar::f64}};
+    for (const auto& [known, type] : names)
+        if (name == known)
+            return type;
+    return std::nullopt;
+}
+
+Scalar scalar_type(TextScan& scan)
+{
+    const std::string_view word = scan.word();
+    const auto type = scalar_named(word);
+    if (!type)
+        scan.fail("unknown property type '" + printable(word) + "'");
+    return *type;
+}
+
+Header read_header(std::string_view bytes, const std::string& file)
+{
+    TextScan scan(bytes, file, 0);
+    if (!scan.next_line() || scan.word() != "ply")
+        throw InputError::at_line(file, 1, "the first line of a PLY file must be 'ply'");
+    Header header;
+    bool has_format = false;
+    for (;;) {
+        if (!scan.next_line())
+            scan.fail("the file ends inside the header; 'end_header' is missing");
+        const std::string_view keyword = scan.word();
+        if (keyword == "format") {
+            const std::string_view name = scan.word();
+            if (name == "ascii")
+                header.format = Format::ascii;
+            else if (name == "binary_little_endian")
+                header.format = Format::little;
+            else if (name == "binary_big_endian")
+                header.format = Format::big;
+            else
+                scan.fail("unknown format '" + printable(name) + "'");
+            has_format = true;
+        } else if (keyword == "element") {
+            Element element;
+            element.name = scan.word();
+            const std::int64_t count = scan.integer(scan.word(), "the number of elements");
+            if (count < 0)
+                scan.fail("the number of elements is negative: " + std::to_string(count));
+            element.count = static_cast<std::uint64_t>(count);
+            header.elements.push_back(std::move(element));
+        } else if (keyword == "property") {
+            if (header.elements.empty())
+                scan.fail("a property before any element");
+            Property property;
+            std::string_view type = scan.word();
+            if (type == "list") {
+                property.list_size_type = scalar_type(scan);
+                if (*property.list_size_type >= Scalar::f32)
+                    scan.fail("a list whose size is not an integer");
+                property.type = scalar_type(scan);
+            } else if (const auto scalar = scalar_named(type)) {
+                property.type = *scalar;
+            } else {
+                scan.fail("unknown property type '" + printable(type) + "'");
+            }
+            const std::string_view name = scan.word();
+            if (name.empty())
+                scan.fail("a property without a name");
+            property.name = name;
+            header.elements.back().properties.push_back(std::move(property));
+        } else if (keyword == "end_header") {
+            break;
+        } else if (keyword != "comment" && keyword != "obj_info") {
+            scan.fail("unknown header line '" + printable(keyword) + "'");
+        }
+    }
+    if (!has_format)
+        scan.fail("the header has no format line");
+    header.body = scan.byte();
+    header.body_line = scan.line();
+    // The body starts right after the line end: CR LF and LF are told apart, a lone CR would swallow a data byte 10.
+    if (header.body < bytes.size() && bytes[header.body] == '\r')
+        ++header.body;
+    if (header.body < bytes.size() && bytes[header.body] == '\n')
+        ++header.body;
+    return header;
+}
+
+// Reads scalars of the body in file order, for all three formats.
+class Body {
+public:
+    Body(std::string_view bytes, const std::string& file, const Header& header)
+        : format_(header.format), bytes_(bytes), file_(file), at_(header.body), text_(bytes.substr(header.body), file, 0),
+          first_line_(header.body_line)
+    {
+    }
+
+    std::size_t bytes_left() const { return format_ == Format::ascii ? text_.bytes_left() : bytes_.size() - at_; }
+
+    /// One scalar as a double; exact for every PLY type.
+    double number(Scalar type, const char* what)
+    {
+        if (format_ == Format::ascii)
+            return ascii_number(type, what);
+        const std::size_t size = scalar_bytes[static_cast<int>(type)];
+        last_ = at_;
+        if (bytes_.size() - at_ < size)
+            fail(std::string("the file ends where ") + what + " was expected");
+        std::uint64_t raw = 0;
+        for (std::size_t i = 0; i < size; ++i)
+            raw = raw << 8 | static_cast<unsigned char>(bytes_[at_ + (format_ == Format::big ? i : size - 1 - i)]);
+        at_ += size;
+        switch (type) {
+        case Scalar::i8: return static_cast<std::int8_t>(raw);
+        case Scalar::u8: return static_cast<std::uint8_t>(raw);
+        case Scalar::i16: return static_cast<std::int16_t>(raw);
+        case Scalar::u16: return static_cast<std::uint16_t>(raw);
+        case Scalar::i32: return static_cast<std::int32_t>(raw);
+        case Scalar::u32: return static_cast<std::uint32_t>(raw);
+        case Scalar::f32: return std::bit_cast<float>(static_cast<std::uint32_t>(raw));
+        case Scalar::f64: return std::bit_cast<double>(raw);
+        }
+        return 0;
+    }
+
+    [[noreturn]] void fail(const std::string& reason) const
+    {
+        if (format_ == Format::ascii)
+            throw InputError::at_line(file_, first_line_ + text_.line(), reason);
+        throw InputError::at_byte(file_, last_, reason);
+    }
+
+private:
+    double ascii_number(Scalar type, const char* what)
+    {
+        try {
+            const std::string_view word = text_.word_across_lines(what);
+            if (type >= Scalar::f32)
+                return text_.number(word, what);
+            return static_cast<double>(text_.integer(word, what));
+        } catch (const InputError& error) { // its line counts from the body
+            const std::string text = error.what();
+            const std::size_t place = file_.size() + 1, colon = text.find(": ", place);
+            fail(text.substr(colon + 2));
+        }
+    }
+
+    Format format_;
+    std::string_view bytes_;
+    std::string file_;
+    std::size_t at_, last_ = 0;
+    TextScan text_;
+    std::size_t first_line_;
+};
+
+// The fewest bytes that one item of the element can take; 0 if it has no properties.
+std::size_t smallest_item(const Element& element, Format format)
+{
+    std::size_t bytes = 0;
+    for (const Property& p : element.properties)
+        bytes += format == Format::ascii ? 2 : scalar_bytes[static_cast<int>(p.list_size_type.value_or(p.type))];
+    return bytes;
+}
+
+std::uint64_t list_size(Body& body, const Property& property)
+{
+    const double size = body.number(*property.list_size_type, "the size of a list");
+    if (size < 0)
+        body.fail("a list of negative size " + std::to_string(static_cast<std::int64_t>(size)));
+    return static_cast<std::uint64_t>(size);
+}
+
+void read_vertex(Body& body, const Element& element, const int (&axis_property)[3], TriangleMesh& mesh)
+{
+    Vec3 v = Vec3::Zero();
+    for (int p = 0; p < static_cast<int>(element.properties.size()); ++p) {
+        const Property& property = element.properties[static_cast<std::size_t>(p)];
+        if (property.list_size_type) {
+            for (std::uint64_t size = list_size(body, property); size > 0; --size)
+                body.number(property.type, "a list item");
+            continue;
+        }
+        const double value = body.number(property.type, "a vertex property");
+        for (int axis = 0; axis < 3; ++axis)
+            if (axis_property[axis] == p) {
+                if (!std::isfinite(value))
+                    body.fail("a coordinate of vertex " + std::to_string(mesh.vertices.size()) + " is not finite");
+                v[axis] = value;
+            }
+    }
+    mesh.vertices.push_back(v);
+}
+
+struct Polygons {
+    std::vector<Triangle> triangles;
+    std::vector<std::uint32_t> polygon; // scratch
+};
+
+void read_face(Body& body, const Element& element, std::size_t index_property, std::uint64_t vertices, Polygons& out)
+{
+    for (std::size_t p = 0; p < element.properties.size(); ++p) {
+        const Property& property = element.properties[p];
+        if (!property.list_size_type) {
+            body.number(property.type, "a face property");
+            continue;
+        }
+        const std::uint64_t size = list_size(body, property);
+        if (p == index_property && size < 3)
+            body.fail("a face with " + std::to_string(size) + " vertices; at least 3 are needed");
+        out.polygon.clear();
+        for (std::uint64_t i = 0; i < size; ++i) {
+            const double index = body.number(property.type, "a vertex index");
+            if (p != index_property)
+                continue;
+            if (!(index >= 0 && index < static_cast<double>(vertices)) || index != std::floor(index))
+                body.fail("vertex index " + printable(std::to_string(index)) + " is out of range; the file declares " +
+                          std::to_string(vertices) + " vertices");
+            out.polygon.push_back(static_cast<std::uint32_t>(index));
+        }
+        for (std::size_t i = 2; i < out.polygon.size(); ++i)
+            out.triangles.push_back({out.polygon[0], out.polygon[i - 1], out.polygon[i]});
+    }
+}
+
+} // namespace
+
+TriangleMesh parse_ply(std::string_view bytes, const std::string& file)
+{
+    const Header header = read_header(bytes, file);
+    const auto vertex_element = std::find_if(header.elements.begin(), header.elements.end(), [](const Element& e) { return e.name == "vertex"; });
+    if (vertex_element == header.elements.end())
+        throw InputError::in_file(file, "the header declares no element 'vertex'");
+
+    Body body(bytes, file, header);
+    TriangleMesh mesh;
+    Polygons faces;
+    for (const Element& element : header.elements) {
+        const std::size_t least = smallest_item(element, header.format);
+        if (least == 0)
+            continue; // nothing of it is in the file
+        if (element.count > 0 && element.count - 1 > body.bytes_left() / least)
+            throw InputError::in_file(file, "element '" + printable(element.name) + "' declares " + std::to_string(element.count) +
+                                                " items, but only " + std::to_string(body.bytes_left()) + " bytes follow");
+        int axes[3] = {-1, -1, -1};
+        std::size_t indices = element.properties.size();
+        for (std::size_t p = 0; p < element.properties.size(); ++p) {
+            const Property& property = element.properties[p];
+            for (int axis = 0; axis < 3; ++axis)
+                if (!property.list_size_type && property.name == std::string(1, static_cast<char>('x' + axis)))
+                    axes[axis] = static_cast<int>(p);
+            if (property.list_size_type && property.type < Scalar::f32 && (property.name == "vertex_indices" || property.name == "vertex_index"))
+                indices = p;
+        }
+        const bool is_vertex = &element == &*vertex_element, is_face = element.name == "face";
+        if (is_vertex && (axes[0] < 0 || axes[1] < 0 || axes[2] < 0))
+            throw InputError::in_file(file, "element 'vertex' lacks one of the properties x, y and z");
+        if (is_face && indices == element.properties.size())
+            throw InputError::in_file(file, "element 'face' has no integer list 'vertex_indices'");
+        if (is_vertex)
+            mesh.vertices.reserve(std::min<std::uint64_t>(element.count, body.bytes_left() / least + 1));
+        for (std::uint64_t i = 0; i < element.count; ++i) {
+            if (is_vertex)
+                read_vertex(body, element, axes, mesh);
+            else
+                read_face(body, element, is_face ? indices : element.properties.size(), vertex_element->count, faces);
+        }
+    }
+    mesh.triangles = std::move(faces.triangles);
+    return mesh;
+}
+
+} // namespace cinch

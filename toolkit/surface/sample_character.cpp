@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// Key-frame interpolation of the glTF 2.0 specification (appendix C) and joint matrices.
+#include <algorithm>
+#include <cmath>
+
+#include "toolkit/surface/character.hpp"
+#include "toolkit/surface/input_error.hpp"
+
+namespace cinch {
+namespace {
+
+using Quad = std::array<double, 4>;
+using Matrix4 = Eigen::Matrix4d;
+
+Quad combine(double a, const Quad& x, double b, const Quad& y)
+{
+    Quad out;
+    for (std::size_t i = 0; i < 4; ++i)
+        out[i] = a * x[i] + b * y[i];
+    return out;
+}
+
+double dot(const Quad& x, const Quad& y) { return x[0] * y[0] + x[1] * y[1] + x[2] * y[2] + x[3] * y[3]; }
+
+Quad slerp(const Quad& from, const Quad& to, double s)
+{
+    const double cosine = dot(from, to);
+    const double sign = cosine < 0 ? -1 : 1; // the shorter way round
+    const double angle = std::acos(std::min(1.0, std::abs(cosine)));
+    if (angle < 1e-6) // sin(angle) loses its digits; the chord and the arc agree to 1e-13 here
+        return combine(1 - s, from, sign * s, to);
+    const double scale = 1 / std::sin(angle);
+    return combine(std::sin((1 - s) * angle) * scale, from, sign * std::sin(s * angle) * scale, to);
+}
+
+Quad evaluate(const Curve& curve, double t)
+{
+    const bool cubic = curve.interpolation == Curve::Interpolation::cubic_spline;
+    auto value_at = [&](std::size_t key) -> const Quad& { return curve.value[cubic ? 3 * key + 1 : key]; };
+    const auto next = std::upper_bound(curve.time_s.begin(), curve.time_s.end(), t);
+    if (next == curve.time_s.begin())
+        return value_at(0);
+    const auto key = static_cast<std::size_t>(next - curve.time_s.begin() - 1);
+    if (next == curve.time_s.end() || curve.interpolation == Curve::Interpolation::step)
+        return value_at(key);
+    const double span = *next - curve.time_s[key], s = (t - curve.time_s[key]) / span;
+    if (cubic) {
+        const double s2 = s * s, s3 = s2 * s;
+        const Quad ends = combine(2 * s3 - 3 * s2 + 1, value_at(key), -2 * s3 + 3 * s2, value_at(key + 1));
+        const Quad tangents = combine(span * (s3 - 2 * s2 + s), curve.value[3 * key + 2], span * (s3 - s2), curve.value[3 * key + 3]);
+        return combine(1, ends, 1, tangents);
+    }
+    if (curve.target == Curve::Target::rotation)
+        return slerp(value_at(key), value_at(key + 1), s);
+    return combine(1 - s, value_at(key), s, value_at(key + 1));
+}
+
+Matrix4 local_matrix(const Bone& bone)
+{
+    if (bone.is_matrix)
+        return Eigen::Map<const Matrix4>(bone.matrix.data());
+    const auto& r = bone.rotation;
+    Eigen::Quaterniond q(r[3], r[0], r[1], r[2]);
+    if (q.squaredNorm() > 0)
+        q.normalize();
+    Matrix4 m = Matrix4::Identity();
+    m.topLeftCorner<3, 3>() = q.toRotationMatrix() * Eigen::Vector3d(bone.scale.data()).asDiagonal();
+    m.topRightCorner<3, 1>() = Eigen::Vector3d(bone.translation.data());
+    return m;
+}
+
+void apply(const Curve& curve, double t, Bone& bone)
+{
+    const Quad value = evaluate(curve, t);
+    bone.is_matrix = false; // the specification forbids animating a matrix; TRS wins where a file does
+    if (curve.target == Curve::Target::rotation)
+        bone.rotation = value;
+    else
+        std::copy_n(value.begin(), 3, (curve.target == Curve::Target::scale ? bone.scale : bone.translation).begin());
+}
+
+std::vector<AffineMap> joint_matrices(const Character& character, const std::vector<Bone>& bones)
+{
+    std::vector<Matrix4, Eigen::aligned_allocator<Matrix4>> world;
+    world.reserve(bones.size());
+    for (const Bone& bone : bones) { // parents come first
+        const Matrix4 local = local_matrix(bone);
+        world.push_back(bone.parent < 0 ? local : world[static_cast<std::size_t>(bone.parent)] * local);
+    }
+    std::vector<AffineMap> maps;
+    maps.reserve(character.joints.size());
+    for (const Joint& joint : character.joints) {
+        Matrix4 bind = Matrix4::Identity();
+        for (int r = 0; r < 3; ++r)
+            for (int c = 0; c < 4; ++c)
+                bind(r, c) = joint.inverse_bind.m[r][c];
+        const Matrix4 m = world[joint.bone] * bind;
+        AffineMap map;
+        for (int r = 0; r < 3; ++r)
+            for (int c = 0; c < 4; ++c) {
+                if (!std::isfinite(m(r, c)))
+                    throw InputError("the matrix of joint " + std::to_string(maps.size()) + " overflows");
+                map.m[r][c] = m(r, c);
+            }
+        maps.push_back(map);
+    }
+    return maps;
+}
+
+} // namespace
+
+Clip rest_pose(const Character& character)
+{
+    return {"rest", {0}, {joint_matrices(character, character.bones)}};
+}
+
+Clip sample(const Character& character, const Character::Animation& animation, double fps)
+{
+    double first = 0, last = 0;
+    bool any = false;
+    for (const Curve& curve : animation.curves) {
+        first = any ? std::min(first, curve.time_s.front()) : curve.time_s.front();
+        last = any ? std::max(last, curve.time_s.back()) : curve.time_s.back();
+        any = true;
+    }
+    constexpr double most_frames = 1e6;
+    if (!((last - first) * fps < most_frames))
+        throw InputError("clip '" + animation.name + "' lasts " + std::to_string(last - first) +
+                         " s, over a million frames at this rate; lower the frames per second");
+    Clip clip;
+    clip.name = animation.name;
+    // Up to a thousandth of a frame before the last key, which is always the last frame.
+    for (std::size_t i = 0; first + static_cast<double>(i) / fps < last - 1e-3 / fps; ++i)
+        clip.time_s.push_back(first + static_cast<double>(i) / fps);
+    clip.time_s.push_back(last);
+    for (const double t : clip.time_s) {
+        std::vector<Bone> bones = character.bones;
+        for (const Curve& curve : animation.curves)
+            apply(curve, t, bones[curve.bone]);
+        clip.frames.push_back(joint_matrices(character, bones));
+    }
+    return clip;
+}
+
+} // namespace cinch

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+#include "toolkit/surface/triangle_mesh.hpp"
+
+namespace cinch {
+
+/// Closed genus-0 surfaces that stand for the paper's three models, about 1 unit in half-extent, exactly as many
+/// vertices as asked for (2V − 4 triangles). Same vertices, same bits on one platform.
+TriangleMesh brain(std::size_t vertices); ///< folded; front along +x, up along +z
+TriangleMesh santa(std::size_t vertices); ///< a body with head, cap, arms and legs; up along +z
+TriangleMesh fish(std::size_t vertices);  ///< a body with fins; swims along +x
+
+/// A unit sphere of `vertices` ≥ 5 in rings of latitude, near-equilateral away from the poles.
+TriangleMesh ring_sphere(std::size_t vertices);
+
+/// Moves the vertices of a unit sphere onto the outermost zero of `distance` along rays from the origin, evening out
+/// edge lengths. `distance` must be at most the true distance to the surface, negative inside, positive beyond radius 3.
+void wrap(TriangleMesh& sphere, const std::function<double(const Vec3&)>& distance);
+
+} // namespace cinch
