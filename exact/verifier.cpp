@@ -62,8 +62,12 @@ public:
                 exact_used_ = false;
                 std::uint8_t& mask = failed[2 * a + side];
                 const Interval support = true_support();
-                if (!(bound_ >= -infinity)) // NaN proves nothing
-                    fail(mask, exact_vertices, "the bound is not a number", violations);
+                if (!(bound_ > -infinity)) { // NaN proves nothing
+                    for (const Statement statement : {exact_vertices, computed_vertices, weight_space})
+                        if (statement != weight_space || has_weight_space)
+                            fail(mask, statement, "the bound is not a number above minus infinity", violations);
+                    continue;
+                }
                 check_exact_vertices(support, mask, violations);
                 check_computed_vertices(mask, violations);
                 if (has_weight_space)

@@ -79,6 +79,10 @@ int main(int argc, char** argv)
 #ifdef CINCH_EXACT
     add_verify(app, verify_options);
 #endif
+    if (argc > 1 && argv[1][0] != '-' && app.get_subcommands([&](const CLI::App* s) { return s->get_name() == argv[1]; }).empty()) {
+        fmt::print(stderr, "cinch: unknown command '{}' (see 'cinch --help')\n", argv[1]);
+        return bad_input;
+    }
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& success) { // --help, --version

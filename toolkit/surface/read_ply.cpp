@@ -253,8 +253,8 @@ void read_face(Body& body, const Element& element, std::size_t index_property, s
             const double index = body.number(property.type, "a vertex index");
             if (p != index_property)
                 continue;
-            if (!(index >= 0 && index < static_cast<double>(vertices)) || index != std::floor(index))
-                body.fail("vertex index " + printable(std::to_string(index)) + " is out of range; the file declares " +
+            if (!(index >= 0 && index < static_cast<double>(vertices)))
+                body.fail("vertex index " + std::to_string(static_cast<std::int64_t>(index)) + " is out of range; the file declares " +
                           std::to_string(vertices) + " vertices");
             out.polygon.push_back(static_cast<std::uint32_t>(index));
         }

@@ -129,9 +129,9 @@ Clip sample(const Character& character, const Character::Animation& animation, d
                          " s, over a million frames at this rate; lower the frames per second");
     Clip clip;
     clip.name = animation.name;
-    // Up to a thousandth of a frame before the last key, which is always the last frame.
-    for (std::size_t i = 0; first + static_cast<double>(i) / fps < last - 1e-3 / fps; ++i)
-        clip.time_s.push_back(first + static_cast<double>(i) / fps);
+    const auto steps = static_cast<std::size_t>(std::max(0.0, std::ceil((last - first) * fps - 1e-3))); // 100.0001 is 100
+    for (std::size_t i = 0; i < steps; ++i)
+        clip.time_s.push_back(first + (last - first) * static_cast<double>(i) / static_cast<double>(steps));
     clip.time_s.push_back(last);
     for (const double t : clip.time_s) {
         std::vector<Bone> bones = character.bones;

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The verifier accepts what is right and bites when anything is damaged.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <catch2/catch.hpp>
+#include <tbb/task_arena.h>
+
+#include "exact/verifier.hpp"
+#include "tests/support.hpp"
+#include "toolkit/deform/dyadic.hpp"
+#include "toolkit/hierarchy/refit.hpp"
+
+using namespace cinch;
+using namespace cinch::exact;
+
+namespace {
+
+constexpr Method methods[] = {Method::convex, Method::eq12, Method::limited, Method::vertices};
+
+struct Scene {
+    test::Example e = test::example(400, 30);
+    Bvh bvh = build_bvh(e.surface, 1);
+
+    std::vector<double> supports(Method method, int k, std::size_t frame = 2, Rounding rounding = Rounding::proven) const
+    {
+        std::vector<double> s(bvh.bvs.size() * static_cast<std::size_t>(k));
+        refit(bvh, e.surface, e.frames[frame], {method, k, rounding}, s);
+        return s;
+    }
+    FrameVerdict verdict(Method method, int k, const std::vector<double>& s, std::size_t frame = 2) const
+    {
+        return Verifier(e.surface, bvh).check(e.frames[frame], method, k, s);
+    }
+};
+
+std::size_t violated(const FrameVerdict& verdict, std::uint8_t statements = 0xff)
+{
+    return static_cast<std::size_t>(std::count_if(verdict.failed.begin(), verdict.failed.end(), [&](auto mask) { return (mask & statements) != 0; }));
+}
+
+} // namespace
+
+TEST_CASE("every method is proven for every k and frame, and the losses add up")
+{
+    const Scene scene;
+    const Verifier verifier(scene.e.surface, scene.bvh);
+    for (const std::string& fault : verifier.rest_data_faults())
+        REQUIRE(fault.empty());
+    for (Method method : methods)
+        for (int k : {6, 14, 18, 26})
+            for (std::size_t frame : {0u, 1u, 2u}) {
+                INFO(name_of(method) << ", k " << k << ", frame " << frame);
+                const auto s = scene.supports(method, k, frame);
+                const FrameVerdict verdict = verifier.check(scene.e.frames[frame], method, k, s);
+                REQUIRE(violated(verdict) == 0);
+                REQUIRE(verdict.examples.empty());
+                CHECK(static_cast<double>(verdict.decided_by_filter) > 0.95 * static_cast<double>(verdict.failed.size()));
+                for (std::size_t i = 0; i < verdict.bvs.size(); ++i) {
+                    const BvReport& bv = verdict.bvs[i];
+                    REQUIRE(bv.bound_radius >= bv.true_radius - 1e-15);
+                    for (double loss : {bv.loss.box, bv.loss.interval, bv.loss.corner})
+                        REQUIRE(loss >= -1e-13);
+                    if (k != 6)
+                        continue;
+                    // Mean over directions of bound − truth; the widths of truth are those of the `vertices` bound, up to rounding.
+                    double width = 0;
+                    for (std::size_t d = 6 * i; d < 6 * i + 6; ++d)
+                        width += s[d] / 6;
+                    const auto truth = scene.supports(Method::vertices, 6, frame, Rounding::plain);
+                    for (std::size_t d = 6 * i; d < 6 * i + 6; ++d)
+                        width -= truth[d] / 6;
+                    REQUIRE(bv.loss.box + bv.loss.interval + bv.loss.corner + bv.loss.rounding == Approx(width).margin(1e-13));
+                    if (i > 20)
+                        break; // the truth above is refitted each time
+                }
+            }
+}
+
+TEST_CASE("limited loses nothing at the corner, convex more than eq12")
+{
+    const Scene scene;
+    double corner[3] = {0, 0, 0};
+    for (Method method : {Method::convex, Method::eq12, Method::limited})
+        for (const BvReport& bv : scene.verdict(method, 6, scene.supports(method, 6)).bvs)
+            corner[static_cast<int>(method)] += bv.loss.corner;
+    CHECK(corner[0] > corner[1]);
+    CHECK(corner[1] > 0.01);
+    CHECK(std::abs(corner[2]) < 1e-12);
+}
+
+TEST_CASE("mutation: without the rounding terms bounds are violated")
+{
+    const Scene scene;
+    for (Method method : {Method::eq12, Method::limited}) { // convex is too loose to fall below the maximum over W'
+        const FrameVerdict verdict = scene.verdict(method, 6, scene.supports(method, 6, 2, Rounding::plain));
+        CHECK(violated(verdict, weight_space) > verdict.failed.size() / (method == Method::limited ? 20 : 1000));
+        REQUIRE_FALSE(verdict.examples.empty());
+        CHECK_THAT(verdict.examples[0].detail, Catch::Contains("exceeds the bound by ") && Catch::Contains("/"));
+    }
+    CHECK(violated(scene.verdict(Method::vertices, 6, scene.supports(Method::vertices, 6, 2, Rounding::plain)), exact_vertices) > 100);
+}
+
+TEST_CASE("mutation: l and h swapped for one simulation node of one BV")
+{
+    Scene scene;
+    const Bv& bv = scene.bvh.bvs[3];
+    const auto j = bv.first_interval + 2;
+    REQUIRE(scene.bvh.l[j] < scene.bvh.h[j]);
+    std::swap(scene.bvh.l[j], scene.bvh.h[j]);
+    const FrameVerdict verdict = scene.verdict(Method::limited, 6, scene.supports(Method::limited, 6));
+    for (std::size_t d = 0; d < 6; ++d)
+        CHECK((verdict.failed[18 + d] & rest_data));
+    CHECK(violated(verdict) == 6); // that BV in all its directions, and no other
+}
+
+TEST_CASE("mutation: one h one unit of 2^-53 below the true maximum, or one l above the minimum")
+{
+    for (bool lower_h : {true, false}) {
+        Scene scene;
+        std::size_t found = scene.bvh.bvs.size();
+        for (std::size_t i = 40; i < scene.bvh.bvs.size() && found == scene.bvh.bvs.size(); ++i) {
+            const auto j = scene.bvh.bvs[i].first_interval;
+            if (scene.bvh.l[j] > 0 && scene.bvh.l[j] < scene.bvh.h[j]) {
+                (lower_h ? scene.bvh.h[j] : scene.bvh.l[j]) += lower_h ? -weight_unit : weight_unit;
+                found = i;
+            }
+        }
+        REQUIRE(found < scene.bvh.bvs.size());
+        const FrameVerdict verdict = scene.verdict(Method::limited, 6, scene.supports(Method::limited, 6));
+        CHECK((verdict.failed[6 * found] & rest_data));
+        CHECK(violated(verdict) == 6);
+        CHECK_THAT(verdict.examples.at(0).detail, Catch::Contains("lies outside"));
+    }
+}
+
+TEST_CASE("mutation: an unlisted simulation node, l > 0 beside a vertex without weight, too few influences")
+{
+    {
+        Scene scene;
+        Bv& bv = scene.bvh.bvs[5];
+        --bv.interval_count;
+        CHECK(violated(scene.verdict(Method::eq12, 6, scene.supports(Method::eq12, 6))) == 6);
+    }
+    {
+        Scene scene;
+        for (std::uint32_t j = 0; j < scene.bvh.bvs[0].interval_count; ++j)
+            if (scene.bvh.l[j] == 0) {
+                scene.bvh.l[j] = 0x1p-53;
+                break;
+            }
+        CHECK(violated(scene.verdict(Method::eq12, 6, scene.supports(Method::eq12, 6)), rest_data) == 6);
+    }
+    {
+        Scene scene;
+        --scene.bvh.bvs[0].vertex_influences;
+        CHECK(violated(scene.verdict(Method::eq12, 6, scene.supports(Method::eq12, 6)), rest_data) == 6);
+    }
+}
+
+TEST_CASE("mutation: a rest box too small")
+{
+    Scene scene;
+    Bv& bv = scene.bvh.bvs[1];
+    for (int i = 0; i < 4; ++i) // the stored half is at most three steps above the tightest
+        bv.half.y() = std::nextafter(bv.half.y(), 0.0);
+    CHECK(violated(scene.verdict(Method::limited, 6, scene.supports(Method::limited, 6)), rest_data) == 6);
+}
+
+TEST_CASE("mutation: a bound just below the truth, per statement")
+{
+    const Scene scene;
+    auto s = scene.supports(Method::vertices, 14);
+    const auto plain = scene.supports(Method::vertices, 14, 2, Rounding::plain);
+    s[14 * 7 + 4] = std::nextafter(plain[14 * 7 + 4], -1e9); // a face direction: the computed vertex itself
+    const FrameVerdict verdict = scene.verdict(Method::vertices, 14, s);
+    CHECK(verdict.failed[14 * 7 + 4] & computed_vertices);
+    CHECK(violated(verdict) == 1);
+    REQUIRE(verdict.examples.size() >= 1);
+    CHECK(verdict.examples[0].bv == 7);
+    CHECK(verdict.examples[0].direction == 4);
+
+    s = scene.supports(Method::limited, 6);
+    s[6 * 2 + 1] = -1e9;
+    const FrameVerdict worse = scene.verdict(Method::limited, 6, s);
+    CHECK(worse.failed[6 * 2 + 1] == (weight_space | exact_vertices | computed_vertices));
+    s[6 * 2 + 1] = std::numeric_limits<double>::quiet_NaN();
+    CHECK(scene.verdict(Method::limited, 6, s).failed[6 * 2 + 1] != 0);
+    s[6 * 2 + 1] = -std::numeric_limits<double>::infinity();
+    CHECK(scene.verdict(Method::limited, 6, s).failed[6 * 2 + 1] == (weight_space | exact_vertices | computed_vertices));
+    s[6 * 2 + 1] = std::numeric_limits<double>::infinity();
+    CHECK(violated(scene.verdict(Method::limited, 6, s)) == 0);
+}
+
+TEST_CASE("broken trees, weights and transforms are refused")
+{
+    const auto refused = [](auto&& damage) {
+        Scene scene;
+        damage(scene);
+        CHECK_THROWS_AS(Verifier(scene.e.surface, scene.bvh), std::invalid_argument);
+    };
+    refused([](Scene& s) { s.bvh.triangle[0] = s.bvh.triangle[1]; });
+    refused([](Scene& s) { s.bvh.bvs[0].triangle_count -= 1; });
+    refused([](Scene& s) { s.bvh.bvs[2].first_child = s.bvh.bvs[1].first_child; });
+    refused([](Scene& s) { s.bvh.bvs[1].first_child = 0; });
+    refused([](Scene& s) { s.bvh.bvs.back().first_interval += 1; });
+    refused([](Scene& s) { s.e.surface.weights.weight[0] += 0x1p-53; });
+    refused([](Scene& s) { s.e.surface.weights.weight[0] += 0x1p-54; });
+    Scene scene;
+    const auto s = scene.supports(Method::limited, 6);
+    scene.e.frames[2][0].m[0][0] = std::numeric_limits<double>::infinity();
+    CHECK_THROWS_AS(scene.verdict(Method::limited, 6, s), std::invalid_argument);
+}
+
+TEST_CASE("the verdict does not depend on the thread count")
+{
+    const Scene scene;
+    const auto s = scene.supports(Method::limited, 6, 2, Rounding::plain);
+    std::vector<FrameVerdict> verdicts;
+    for (int threads : {1, 2, 7})
+        tbb::task_arena(threads).execute([&] { verdicts.push_back(scene.verdict(Method::limited, 6, s)); });
+    for (std::size_t i : {1u, 2u}) {
+        CHECK(verdicts[0].failed == verdicts[i].failed);
+        CHECK(verdicts[0].decided_by_filter == verdicts[i].decided_by_filter);
+        for (std::size_t bv = 0; bv < verdicts[0].bvs.size(); ++bv)
+            REQUIRE(verdicts[0].bvs[bv].loss.box == verdicts[i].bvs[bv].loss.box);
+    }
+}

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+
+#include <catch2/catch.hpp>
+
+#include "tests/support.hpp"
+
+using namespace cinch;
+
+namespace {
+
+void check_refused(const std::string& arguments, const std::string& reason)
+{
+    INFO(arguments);
+    const test::Run run = test::cinch(arguments);
+    CHECK(run.status == 2);
+    CHECK(run.out.empty());
+    CHECK_THAT(run.err, Catch::StartsWith("cinch: ") && Catch::Contains(reason));
+    CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
+}
+
+} // namespace
+
+TEST_CASE("help and version")
+{
+    const test::Run help = test::cinch("verify --help");
+    CHECK(help.status == 0);
+    CHECK_THAT(help.out, Catch::Contains("Examples:") && Catch::Contains("--weights") && Catch::Contains("'V J'"));
+    CHECK(test::cinch("--help").status == 0);
+    const test::Run version = test::cinch("--version");
+    CHECK(version.status == 0);
+    CHECK_THAT(version.out, Catch::StartsWith("cinch "));
+}
+
+TEST_CASE("bad usage exits 2 with one line")
+{
+    check_refused("", "subcommand");
+    check_refused("verfiy", "verfiy");
+    check_refused("verify --kdop 8", "--kdop");
+    check_refused("verify --method quick", "--method");
+    check_refused("verify --frames 0", "--frames");
+    check_refused("verify --leaf none", "--leaf");
+    check_refused("verify --unknown", "--unknown");
+    check_refused("verify brains", "no such file, and no shape of that name");
+    check_refused("verify brain --motion wiggle", "known are strong, mild");
+    check_refused("verify brain --clip Walk", "--clip needs");
+    check_refused("verify brain --fps 30", "--fps needs");
+    check_refused("verify brain --weights w.txt", "--weights and --transforms need a mesh file");
+}
+
+TEST_CASE("bad input exits 2 with one line: file, place, reason")
+{
+    const test::TemporaryFolder folder;
+    const std::string at = folder.path().string() + "/";
+    folder.write("bad.obj", "v 0 0 0\nv 1 0 0\nv 0 1 nan\nf 1 2 3\n");
+    check_refused("verify " + at + "bad.obj", at + "bad.obj:3: a coordinate 'nan' is not finite");
+    folder.write("empty.ply", "");
+    check_refused("verify " + at + "empty.ply", "the file is empty");
+    folder.write("points.off", "OFF\n1 0 0\n0 0 0\n");
+    check_refused("verify " + at + "points.off", "no triangles");
+    check_refused("verify " + at, "unknown format");
+    folder.write("a.glb", "glTF");
+    check_refused("verify " + at + "a.glb", "not a valid glTF file");
+    folder.write("ok.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+    folder.write("w.txt", "4 1\n1 0 1\n");
+    check_refused("verify " + at + "ok.off --weights " + at + "w.txt", "go together");
+    check_refused("verify " + at + "ok.off --weights " + at + "w.txt --transforms " + at + "t.txt", "declares 4 vertices, but the other file has 3");
+    check_refused("verify " + at + "ok.off --nodes 5 --weights " + at + "w.txt --transforms " + at + "t.txt", "--nodes needs");
+}

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "tests/support.hpp"
+
+using namespace cinch;
+using nlohmann::json;
+
+namespace {
+
+json summary(const test::Run& run)
+{
+    json last;
+    for (const std::string& line : run.lines()) {
+        last = json::parse(line);
+        CHECK(last["experiment"] == "verify");
+    }
+    return last;
+}
+
+} // namespace
+
+TEST_CASE("verify proves a shape and says so in JSON Lines")
+{
+    const test::Run run = test::cinch("verify brain-3500 --frames 2 --kdop 14 --leaf 4 --json");
+    CHECK(run.status == 0);
+    CHECK(run.err.empty());
+    const json s = summary(run);
+    CHECK(s["bounds"] == s["proven"]);
+    CHECK(s["violated"] == 0);
+    CHECK(s["frames"] == 2);
+    CHECK(s["kdop"] == 14);
+    CHECK(s["ladder_broken"] == 0);
+    CHECK(s["complete"] == true);
+    CHECK(s["filter_hit_rate"] > 0.95);
+    for (const char* field : {"input", "method", "seconds", "version", "commit", "compiler", "flags", "cpu", "simd_target", "seed"})
+        CHECK(s.contains(field));
+    std::size_t bounds = 0;
+    for (const std::string& line : run.lines()) {
+        const json record = json::parse(line);
+        if (!record.contains("level"))
+            continue;
+        bounds += record["proven"].get<std::size_t>();
+        for (const char* field : {"bvs", "mean_n", "mean_ratio", "max_ratio", "box_loss", "interval_loss", "corner_loss", "rounding_loss"})
+            CHECK(record[field].is_number());
+    }
+    CHECK(bounds == s["bounds"]);
+}
+
+TEST_CASE("every method is proven on the table too, and verdict and order are stated")
+{
+    for (const char* method : {"convex", "eq12", "limited", "vertices"}) {
+        const test::Run run = test::cinch(std::string("verify santa --frames 2 --method ") + method);
+        CHECK(run.status == 0);
+        CHECK_THAT(run.out, Catch::Contains(" bounds, ") && Catch::Contains(" proven, 0 violated\n") &&
+                                Catch::Contains("limited <= eq12 <= convex in all of"));
+    }
+}
+
+TEST_CASE("the same seed gives the same records, whatever the thread count, and another seed others")
+{
+    auto records = [](const std::string& options) {
+        json all;
+        for (const std::string& line : test::cinch("verify fish --frames 1 --nodes 40 --leaf 8 --json " + options).lines()) {
+            json record = json::parse(line);
+            for (const char* field : {"seconds", "threads", "seed"})
+                record.erase(field);
+            all.push_back(record);
+        }
+        return all;
+    };
+    const json one = records("--threads 1");
+    CHECK(one == records("--threads 2"));
+    CHECK(one != records("--seed 5"));
+}
+
+TEST_CASE("mutation: sabotaged bounds are reported and exit 1")
+{
+    for (const char* kind : {"no-rounding", "swap-interval", "lower-h"}) {
+        INFO(kind);
+        const test::Run run = test::cinch(std::string("verify brain-3500 --nodes 60 --frames 2 --json --sabotage ") + kind);
+        CHECK(run.status == 1);
+        const json s = summary(run);
+        CHECK(s["violated"] > 0);
+        const test::Run table = test::cinch(std::string("verify brain-3500 --nodes 60 --frames 2 --sabotage ") + kind);
+        CHECK(table.status == 1);
+        CHECK_THAT(table.out, Catch::Contains("violated: frame 0, level 0, BV 0") || Catch::Contains("violated: frame"));
+    }
+}
+
+TEST_CASE("a mesh with weights and transforms of one's own")
+{
+    const test::TemporaryFolder folder;
+    const std::string at = folder.path().string() + "/";
+    folder.write("m.off", "OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n3 0 1 2\n3 1 3 2\n");
+    folder.write("w.txt", "4 2\n1 0 1\n2 0 0.25 1 0.25\n2 1 1 0 3\n1 1 0\n");
+    folder.write("t.txt", "2\nstill 1 2\n0 1 0 0 0 0 1 0 0 0 0 1 0 1 0 0 0 0 1 0 0 0 0 1 0\n"
+                          "move 2 2\n0 1 0 0 0 0 1 0 0 0 0 1 0 1 0 0 0 0 1 0 0 0 0 1 0\n0.5 0 -1 0 0 1 0 0 0 0 0 1 0 1 0 0 5 0 1 0 0 0 0 1 0\n");
+    const test::Run run = test::cinch("verify " + at + "m.off --weights " + at + "w.txt --transforms " + at + "t.txt --clip move --kdop 26");
+    CHECK(run.status == 0);
+    CHECK_THAT(run.out, Catch::Contains("2 simulation nodes") && Catch::Contains("motion 'move', 2 frames") && Catch::Contains("sums 0.0000 to 4.0000") &&
+                            Catch::Contains("1 vertex has no weight at all") && Catch::Contains("156 bounds, 156 proven, 0 violated"));
+    CHECK_THAT(test::cinch("verify " + at + "m.off --weights " + at + "w.txt --transforms " + at + "t.txt --clip run").err,
+               Catch::Contains("has no clip 'run'; it has still, move"));
+}
+
+TEST_CASE("reference meshes and characters are proven")
+{
+    const auto folder = test::shared("meshes");
+    if (!folder)
+        return;
+    for (const char* kdop : {" --kdop 6", " --kdop 14"})
+        for (const char* input : {"brain_conte69_lh_30000.ply --nodes 509", "fish_blub_7106.obj", "skin/CesiumMan.glb", "skin/RiggedFigure.glb",
+                                  "skin/robot.glb --clip Robot_Dance", "nasty_spider.obj", "nasty_wuson.off"}) {
+            INFO(input << kdop);
+            const test::Run run = test::cinch("verify " + folder->string() + "/" + input + kdop);
+            CHECK(run.status == 0);
+            CHECK_THAT(run.out, Catch::Contains(" proven, 0 violated\n"));
+            if (std::string(input) == "skin/RiggedFigure.glb")
+                CHECK_THAT(run.out, Catch::Contains("13 of 130 vertices had weights that sum to less than 0.999 or more than 1.001 (sums 0.2001"));
+        }
+}

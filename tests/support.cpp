@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tests/support.hpp"
+
+#include <cstdlib>
+#include <fstream>
+#include <iostream>
+#include <sstream>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "toolkit/deform/motion.hpp"
+#include "toolkit/deform/sample_nodes.hpp"
+#include "toolkit/surface/shapes.hpp"
+
+namespace cinch::test {
+
+TemporaryFolder::TemporaryFolder()
+{
+    std::string pattern = (std::filesystem::temp_directory_path() / "cinch-test-XXXXXX").string();
+    if (!mkdtemp(pattern.data()))
+        throw std::runtime_error("no temporary folder");
+    path_ = pattern;
+}
+
+TemporaryFolder::~TemporaryFolder()
+{
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+}
+
+std::filesystem::path TemporaryFolder::write(const std::string& name, std::string_view bytes) const
+{
+    std::ofstream(path_ / name, std::ios::binary) << bytes;
+    return path_ / name;
+}
+
+std::optional<std::filesystem::path> shared(const std::string& name)
+{
+    const std::filesystem::path path = std::filesystem::path(CINCH_SHARED) / name;
+    if (std::filesystem::exists(path))
+        return path;
+    std::cout << "SKIPPED: the reference material '" << name << "' is not here\n";
+    return std::nullopt;
+}
+
+std::vector<std::string> Run::lines() const
+{
+    std::vector<std::string> all;
+    std::istringstream in(out);
+    for (std::string line; std::getline(in, line);)
+        all.push_back(line);
+    return all;
+}
+
+static std::string slurp(const std::filesystem::path& path)
+{
+    std::ifstream in(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+Run cinch(const std::string& arguments)
+{
+    const TemporaryFolder folder;
+    const std::string out = (folder.path() / "out").string(), err = (folder.path() / "err").string();
+    const std::string command = std::string("'") + CINCH_PROGRAM + "' " + arguments + " >'" + out + "' 2>'" + err + "' </dev/null";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), slurp(out), slurp(err)};
+}
+
+Example example(std::size_t vertices, std::size_t nodes)
+{
+    Example out;
+    out.surface.mesh = brain(vertices);
+    centre_and_scale(out.surface.mesh, 1.2);
+    const SimulationNodes sampled = sample_nodes(out.surface.mesh, nodes, 0);
+    out.surface.weights = kernel_weights(out.surface.mesh, sampled, 2);
+    out.frames = scripted_clip(*named_motion("strong"), sampled.position, 3).frames;
+    return out;
+}
+
+} // namespace cinch::test

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "toolkit/deform/surface.hpp"
+
+namespace cinch::test {
+
+/// A folder that disappears with the object.
+class TemporaryFolder {
+public:
+    TemporaryFolder();
+    ~TemporaryFolder();
+    std::filesystem::path write(const std::string& name, std::string_view bytes) const;
+    const std::filesystem::path& path() const { return path_; }
+
+private:
+    std::filesystem::path path_;
+};
+
+/// A file or folder of the reference material, or empty with a line that ctest takes for "skipped".
+std::optional<std::filesystem::path> shared(const std::string& name);
+
+struct Run {
+    int status = -1;
+    std::string out, err;
+    std::vector<std::string> lines() const; ///< of out
+};
+/// Runs the program with these arguments (a shell line) and waits.
+Run cinch(const std::string& arguments);
+
+/// A small closed surface with kernel weights: `vertices` on a bumpy sphere, `nodes` simulation nodes.
+struct Example {
+    DeformableSurface surface;
+    std::vector<std::vector<AffineMap>> frames; ///< rest, half and full strong motion
+};
+Example example(std::size_t vertices, std::size_t nodes);
+
+} // namespace cinch::test

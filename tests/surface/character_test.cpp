@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+#include <cstring>
+#include <numbers>
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "tests/support.hpp"
+#include "toolkit/surface/character.hpp"
+#include "toolkit/surface/input_error.hpp"
+
+using namespace cinch;
+using nlohmann::json;
+
+namespace {
+
+std::string base64(const std::string& bytes)
+{
+    const char* digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string out;
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        std::uint32_t group = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+            group = group << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+        for (std::size_t k = 0; k < 4; ++k)
+            out += i + k > bytes.size() ? '=' : digits[group >> (18 - 6 * k) & 63];
+    }
+    return out;
+}
+
+// A glTF document with one buffer, built piece by piece.
+struct Document {
+    json root = {{"asset", {{"version", "2.0"}}}, {"accessors", json::array()}, {"bufferViews", json::array()}, {"animations", json::array()}};
+    std::string bytes;
+
+    template <class T> int view(const std::vector<T>& values)
+    {
+        while (bytes.size() % 4)
+            bytes += '\0';
+        root["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", bytes.size()}, {"byteLength", values.size() * sizeof(T)}});
+        bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+        return static_cast<int>(root["bufferViews"].size()) - 1;
+    }
+    template <class T> int accessor(const std::vector<T>& values, const char* type, int component, int per_element, bool normalized = false)
+    {
+        root["accessors"].push_back({{"bufferView", view(values)}, {"componentType", component}, {"type", type},
+                                     {"count", values.size() / static_cast<std::size_t>(per_element)}, {"normalized", normalized}});
+        return static_cast<int>(root["accessors"].size()) - 1;
+    }
+    int floats(const std::vector<float>& values, const char* type, int per_element) { return accessor(values, type, 5126, per_element); }
+    void animate(const std::string& name, const char* path, const char* interpolation, std::vector<float> times, std::vector<float> values, int per_element)
+    {
+        const int input = floats(times, "SCALAR", 1), output = floats(values, per_element == 4 ? "VEC4" : "VEC3", per_element);
+        json sampler = {{"input", input}, {"output", output}};
+        if (*interpolation)
+            sampler["interpolation"] = interpolation;
+        root["animations"].push_back({{"name", name}, {"samplers", {sampler}}, {"channels", {{{"sampler", 0}, {"target", {{"node", 1}, {"path", path}}}}}}});
+    }
+    Character parse()
+    {
+        root["buffers"] = {{{"byteLength", bytes.size()}, {"uri", "data:application/octet-stream;base64," + base64(bytes)}}};
+        return parse_gltf(root.dump(), "document.gltf");
+    }
+};
+
+// One triangle; joint 0 is still, joint 1 (bone 1, offset (0, 1, 0) by its bind matrix) moves.
+Document triangle()
+{
+    Document d;
+    d.root["nodes"] = {{{"mesh", 0}, {"skin", 0}}, {{"name", "moving"}, {"translation", {0, 1, 0}}}, {{"name", "still"}}};
+    d.root["scenes"] = {{{"nodes", {0, 1, 2}}}};
+    const int position = d.floats({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0}, "VEC3", 3);
+    const int joints = d.accessor<std::uint8_t>({0, 1, 0, 0, 1, 0, 0, 0, 1, 1, 0, 0, 0, 1, 0, 0}, "VEC4", 5121, 4);
+    const int weights = d.accessor<std::uint8_t>({51, 204, 0, 0, 255, 0, 0, 0, 128, 127, 0, 0, 51, 204, 0, 0}, "VEC4", 5121, 4, true);
+    const int bind = d.floats({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, /**/ 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -1, 0, 1}, "MAT4", 16);
+    const int indices = d.accessor<std::uint16_t>({0, 1, 2, 3, 1, 2}, "SCALAR", 5123, 1);
+    d.root["skins"] = {{{"joints", {2, 1}}, {"inverseBindMatrices", bind}}};
+    d.root["meshes"] = {{{"primitives", {{{"attributes", {{"POSITION", position}, {"JOINTS_0", joints}, {"WEIGHTS_0", weights}}}, {"indices", indices}}}}}};
+    return d;
+}
+
+AffineMap moving_joint(const Clip& clip, std::size_t frame) { return clip.frames.at(frame).at(1); }
+
+} // namespace
+
+TEST_CASE("a skin loads: welding, repeated joints, normalised weights")
+{
+    Document document = triangle();
+    const Character c = document.parse();
+    REQUIRE(c.mesh.vertices.size() == 3); // vertex 3 repeats vertex 0
+    CHECK(c.mesh.triangles == std::vector<Triangle>{{0, 1, 2}, {0, 1, 2}});
+    CHECK(c.influences.row == std::vector<std::uint32_t>{0, 2, 3, 4});
+    CHECK(c.influences.node == std::vector<std::uint32_t>{0, 1, 1, 1});
+    CHECK(c.influences.weight == std::vector<double>{51 / 255.0, 204 / 255.0, 1.0, 1.0});
+    const Clip rest = rest_pose(c);
+    for (int r = 0; r < 3; ++r)
+        for (int col = 0; col < 4; ++col)
+            CHECK(rest.frames[0][1].m[r][col] == identity_map.m[r][col]); // (0, 1, 0) · inverse bind (0, −1, 0)
+}
+
+TEST_CASE("all interpolation modes follow the specification")
+{
+    Document d = triangle();
+    d.animate("linear", "translation", "LINEAR", {1, 3}, {0, 1, 0, 4, 1, 0}, 3);
+    d.animate("default", "translation", "", {1, 3}, {0, 1, 0, 4, 1, 0}, 3);
+    d.animate("step", "translation", "STEP", {0, 1, 2}, {1, 1, 0, 2, 1, 0, 3, 1, 0}, 3);
+    // Hermite with end values 0 and 4, out-tangent 2 at the first key, in-tangent −1 at the second, 2 s apart.
+    d.animate("cubic", "translation", "CUBICSPLINE", {0, 2}, {9, 9, 9, 0, 1, 0, 2, 0, 0, /**/ -1, 0, 0, 4, 1, 0, 9, 9, 9}, 3);
+    d.animate("turn", "rotation", "LINEAR", {0, 1}, {0, 0, 0, 1, 0, 0, 0.70710678f, 0.70710678f}, 4);
+    d.animate("long way", "rotation", "LINEAR", {0, 1}, {0, 0, 0, 1, 0, 0, -0.70710678f, -0.70710678f}, 4);
+    d.animate("grow", "scale", "LINEAR", {0, 1}, {1, 1, 1, 3, 1, 0.5f}, 3);
+    const Character c = d.parse();
+    REQUIRE(c.animations.size() == 7);
+
+    const Clip linear = sample(c, c.animations[0], 2);
+    REQUIRE(linear.time_s == std::vector<double>{1, 1.5, 2, 2.5, 3});
+    CHECK(moving_joint(linear, 1).m[0][3] == 1);
+    CHECK(moving_joint(sample(c, c.animations[1], 2), 3).m[0][3] == 3);
+    const Clip step = sample(c, c.animations[2], 4);
+    CHECK(moving_joint(step, 3).m[0][3] == 1);
+    CHECK(moving_joint(step, 4).m[0][3] == 2);
+    CHECK(moving_joint(step, 8).m[0][3] == 3);
+    // At s = ½: ½·0 + ½·4 + 2 s · (⅛·2 − ⅛·(−1)) = 2.75.
+    CHECK(moving_joint(sample(c, c.animations[3], 1), 1).m[0][3] == Approx(2.75).margin(1e-12));
+    for (int turn : {4, 5}) { // q and −q are the same turn
+        const AffineMap half = moving_joint(sample(c, c.animations[static_cast<std::size_t>(turn)], 2), 1);
+        CHECK(half.m[0][0] == Approx(std::cos(std::numbers::pi / 4)).margin(1e-7));
+        CHECK(half.m[1][0] == Approx(std::sin(std::numbers::pi / 4)).margin(1e-7));
+    }
+    const AffineMap grown = moving_joint(sample(c, c.animations[6], 2), 1);
+    CHECK(grown.m[0][0] == 2);
+    CHECK(grown.m[2][2] == 0.75);
+    CHECK_THROWS_AS(sample(c, c.animations[0], 1e9), InputError);
+}
+
+TEST_CASE("sparse accessors replace elements")
+{
+    Document d = triangle();
+    const int at = d.view<std::uint16_t>({2}), value = d.view<float>({7, 8, 9});
+    d.root["accessors"][0]["sparse"] = {{"count", 1}, {"indices", {{"bufferView", at}, {"componentType", 5123}}}, {"values", {{"bufferView", value}}}};
+    CHECK(d.parse().mesh.vertices[2] == Vec3(7, 8, 9));
+}
+
+TEST_CASE("malformed characters are refused in one line")
+{
+    auto refused = [](Document d, const std::string& reason) {
+        try {
+            d.parse();
+            FAIL("loaded, expected: " << reason);
+        } catch (const InputError& error) {
+            const std::string message = error.what();
+            CHECK_THAT(message, Catch::StartsWith("document.gltf: ") && Catch::Contains(reason));
+            CHECK(message.find('\n') == std::string::npos);
+        }
+    };
+    Document d = triangle();
+    SECTION("joint index") { d.root["accessors"][1]["bufferView"] = d.view<std::uint8_t>(std::vector<std::uint8_t>(16, 7)); refused(d, "names joint 7; skin 0 has 2"); }
+    SECTION("vertex index") { d.root["accessors"][4]["bufferView"] = d.view<std::uint16_t>({0, 1, 2, 3, 1, 9}); refused(d, "vertex index 9 is out of range"); }
+    SECTION("accessor past its view") { d.root["accessors"][0]["count"] = 5; refused(d, "reaches past its buffer view"); }
+    SECTION("absurd count") { d.root["accessors"][0]["count"] = 4000000000u; refused(d, "more than the file's buffers have bytes"); }
+    SECTION("NaN") { d.root["accessors"][0]["bufferView"] = d.view<float>(std::vector<float>(12, NAN)); refused(d, "not finite"); }
+    SECTION("cycle") { d.root["nodes"][1]["children"] = {2}; d.root["nodes"][2]["children"] = {1}; refused(d, "its own ancestor"); }
+    SECTION("two parents") { d.root["nodes"].push_back({{"children", {1}}}); d.root["nodes"].push_back({{"children", {1}}}); refused(d, "two parents"); }
+    SECTION("no skin") { d.root.erase("skins"); d.root["nodes"][0].erase("skin"); refused(d, "no skin"); }
+    SECTION("short bind matrices") { d.root["accessors"][3]["count"] = 1; refused(d, "fewer inverse bind matrices"); }
+    SECTION("interpolation") { d.animate("a", "scale", "BEZIER", {0, 1}, {1, 1, 1, 1, 1, 1}, 3); refused(d, "unknown interpolation"); }
+    SECTION("key times") { d.animate("a", "scale", "LINEAR", {1, 0}, {1, 1, 1, 1, 1, 1}, 3); refused(d, "do not ascend"); }
+    SECTION("key count") { d.animate("a", "scale", "CUBICSPLINE", {0, 1}, {1, 1, 1, 1, 1, 1}, 3); refused(d, "2 keys but 2 values"); }
+    SECTION("compression") { d.root["extensionsRequired"] = {"KHR_draco_mesh_compression"}; refused(d, "compressed"); }
+    CHECK_THROWS_AS(parse_gltf("glTF and then nothing", "a.glb"), InputError);
+    CHECK_THROWS_AS(parse_gltf("{", "a.gltf"), InputError);
+}
+
+TEST_CASE("joint matrices and weights equal the reference of every character")
+{
+    const auto folder = test::shared("meshes/skin");
+    if (!folder)
+        return;
+    for (const std::string name : {"CesiumMan", "Fox", "RiggedFigure", "robot"}) {
+        INFO(name);
+        const Character c = read_gltf(*folder / (name + ".glb"));
+        const Influences weights = read_weights_text(*folder / (name + ".weights.txt"), c.mesh.vertices.size());
+        CHECK(c.influences.row == weights.row);
+        CHECK(c.influences.node == weights.node);
+        REQUIRE(c.influences.weight.size() == weights.weight.size());
+        for (std::size_t i = 0; i < weights.weight.size(); ++i)
+            REQUIRE(std::abs(c.influences.weight[i] - weights.weight[i]) <= 1e-8);
+
+        const std::vector<Clip> clips = read_clips_text(*folder / (name + ".frames.txt"), weights.node_count);
+        REQUIRE(clips.size() == c.animations.size());
+        for (std::size_t i = 0; i < clips.size(); ++i) {
+            const Clip ours = sample(c, c.animations[i], 30);
+            INFO(clips[i].name);
+            CHECK(ours.name == clips[i].name);
+            REQUIRE(ours.frames.size() == clips[i].frames.size());
+            double worst = 0;
+            for (std::size_t f = 0; f < ours.frames.size(); ++f) {
+                REQUIRE(ours.time_s[f] == Approx(clips[i].time_s[f]).margin(1e-6));
+                for (std::size_t j = 0; j < ours.frames[f].size(); ++j)
+                    for (int r = 0; r < 3; ++r)
+                        for (int col = 0; col < 4; ++col) {
+                            const double wanted = clips[i].frames[f][j].m[r][col];
+                            worst = std::max(worst, std::abs(ours.frames[f][j].m[r][col] - wanted) / std::max(1.0, std::abs(wanted)));
+                        }
+            }
+            CHECK(worst < 1e-5); // the reference is printed with nine digits
+        }
+    }
+}
