@@ -189,6 +189,7 @@ TEST_CASE("joint matrices and weights equal the reference of every character")
 
         const std::vector<Clip> clips = read_clips_text(*folder / (name + ".frames.txt"), weights.node_count);
         REQUIRE(clips.size() == c.animations.size());
+        const double size = extent(c.mesh).longest_half;
         for (std::size_t i = 0; i < clips.size(); ++i) {
             const Clip ours = sample(c, c.animations[i], 30);
             INFO(clips[i].name);
@@ -201,10 +202,10 @@ TEST_CASE("joint matrices and weights equal the reference of every character")
                     for (int r = 0; r < 3; ++r)
                         for (int col = 0; col < 4; ++col) {
                             const double wanted = clips[i].frames[f][j].m[r][col];
-                            worst = std::max(worst, std::abs(ours.frames[f][j].m[r][col] - wanted) / std::max(1.0, std::abs(wanted)));
+                            worst = std::max(worst, std::abs(ours.frames[f][j].m[r][col] - wanted) / std::max({1.0, std::abs(wanted), col == 3 ? size : 0.0}));
                         }
             }
-            CHECK(worst < 1e-5); // the reference is printed with nine digits
+            CHECK(worst < 5e-6); // key frames are floats, and chains of up to ten joints multiply them
         }
     }
 }

@@ -58,8 +58,8 @@ struct Character {
 Character read_gltf(const std::filesystem::path& path);
 Character parse_gltf(std::string_view bytes, const std::string& file);
 
-/// Joint matrices (joint world × inverse bind) at evenly spaced times from the first key to the last, both included, at least
-/// `fps` per second. Throws InputError if the clip would have more than a million frames.
+/// Joint matrices (joint world × inverse bind) at evenly spaced times from the first key to the last, both included, as near to
+/// `fps` per second as that allows. Throws InputError if the clip would have more than a million frames.
 Clip sample(const Character& character, const Character::Animation& animation, double fps);
 
 /// The rest pose as a clip of one frame.

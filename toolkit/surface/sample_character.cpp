@@ -129,7 +129,7 @@ Clip sample(const Character& character, const Character::Animation& animation, d
                          " s, over a million frames at this rate; lower the frames per second");
     Clip clip;
     clip.name = animation.name;
-    const auto steps = static_cast<std::size_t>(std::max(0.0, std::ceil((last - first) * fps - 1e-3))); // 100.0001 is 100
+    const auto steps = static_cast<std::size_t>(std::max(last > first ? 1.0 : 0.0, std::round((last - first) * fps)));
     for (std::size_t i = 0; i < steps; ++i)
         clip.time_s.push_back(first + (last - first) * static_cast<double>(i) / static_cast<double>(steps));
     clip.time_s.push_back(last);

@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Sourced by experiments/run and tests/run: installs what is missing, configures once, builds what changed.
+# Everything goes to standard error, so that what the program prints can be piped.
+
+packages=(g++ cmake ninja-build ccache git catch2 libboost-dev libcgal-dev libcli11-dev libeigen3-dev libfmt-dev libgmp-dev
+  libmpfr-dev librapidcheck-dev libtbb-dev libtinygltf-dev nlohmann-json3-dev)
+
+install_packages() {
+  command -v dpkg-query >/dev/null || {
+    echo "This is no Debian system; if the build fails, install the equivalents of: ${packages[*]}" >&2
+    return
+  }
+  local missing=() name
+  for name in "${packages[@]}"; do
+    [ "$(dpkg-query -W -f '${db:Status-Status}' "$name" 2>/dev/null)" = installed ] || missing+=("$name")
+  done
+  [ ${#missing[@]} -gt 0 ] || return 0
+  local as_root=()
+  if [ "$(id -u)" -ne 0 ]; then
+    if command -v sudo >/dev/null && { [ -t 0 ] || sudo -n true 2>/dev/null; }; then
+      as_root=(sudo)
+    else
+      echo "Some packages are missing. As root, run:" >&2
+      echo "  apt-get update && apt-get install --no-install-recommends ${missing[*]}" >&2
+      exit 2
+    fi
+  fi
+  echo "Installing ${missing[*]}" >&2
+  "${as_root[@]}" apt-get update -qq >&2
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >&2
+}
+
+# build TARGET...: configures the release preset if that was never done, then builds the targets.
+build() {
+  cd "$source"
+  mkdir -p .build
+  exec 9>.build/lock
+  flock 9 # two calls at once take turns
+  [ -f .build/release/build.ninja ] || cmake --preset release >&2
+  cmake --build --preset release --target "$@" | sed -u '/Reading the commit$/d' >&2
+  exec 9>&-
+}
