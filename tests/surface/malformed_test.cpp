@@ -70,6 +70,7 @@ const std::vector<Malformed> files = {
     {"orphan.ply", "ply\nformat ascii 1.0\nproperty float x\nend_header\n", ":3: a property before any element"},
     {"novertex.ply", "ply\nformat ascii 1.0\nelement face 0\nproperty list uchar int vertex_indices\nend_header\n", ": the header declares no element 'vertex'"},
     {"noz.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nend_header\n0 0\n", ": element 'vertex' lacks"},
+    {"noproperties.ply", "ply\nformat ascii 1.0\nelement vertex 3\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n3 0 1 2\n", ": element 'vertex' lacks"},
     {"nolist.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty int a\nend_header\n0 0 0\n1\n", ": element 'face' has no integer list"},
     {"floatsize.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty list float int x\nend_header\n", ":4: a list whose size is not an integer"},
     {"negative.ply", "ply\nformat ascii 1.0\nelement vertex -1\nproperty float x\nend_header\n", ":3: the number of elements is negative"},

@@ -204,7 +204,7 @@ struct Builder {
                     fail("vertex " + std::to_string(k) + " has a negative weight");
                 if (weight == 0)
                     continue;
-                if (!(joints[set][i] < static_cast<double>(model.skins[skin].joints.size())))
+                if (!(joints[set][i] >= 0 && joints[set][i] < static_cast<double>(model.skins[skin].joints.size())))
                     fail("vertex " + std::to_string(k) + " names joint " + std::to_string(static_cast<std::int64_t>(joints[set][i])) +
                          "; skin " + std::to_string(skin) + " has " + std::to_string(model.skins[skin].joints.size()));
                 sum[first_joint[skin] + static_cast<std::uint32_t>(joints[set][i])] += weight;

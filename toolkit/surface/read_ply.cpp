@@ -277,9 +277,9 @@ TriangleMesh parse_ply(std::string_view bytes, const std::string& file)
     Polygons faces;
     for (const Element& element : header.elements) {
         const std::size_t least = smallest_item(element, header.format);
-        if (least == 0)
+        if (least == 0 && &element != &*vertex_element)
             continue; // nothing of it is in the file
-        if (element.count > 0 && element.count - 1 > body.bytes_left() / least)
+        if (least > 0 && element.count > 0 && element.count - 1 > body.bytes_left() / least)
             throw InputError::in_file(file, "element '" + printable(element.name) + "' declares " + std::to_string(element.count) +
                                                 " items, but only " + std::to_string(body.bytes_left()) + " bytes follow");
         int axes[3] = {-1, -1, -1};
