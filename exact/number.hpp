@@ -32,7 +32,7 @@ inline Interval absolute(const Interval& x) { return CGAL::abs(x); }
 
 inline double middle(const Interval& x) { return x.inf() + 0.5 * (x.sup() - x.inf()); }
 
-/// Lowest terms, positive denominator; "p" alone where the denominator is 1.
+/// "p/q" in lowest terms, q > 0.
 inline std::string as_fraction(const Exact& x)
 {
     mpq_t q;
@@ -48,6 +48,8 @@ inline std::string as_fraction(const Exact& x)
     void (*release)(void*, size_t);
     mp_get_memory_functions(nullptr, nullptr, &release);
     release(text, out.size() + 1);
+    if (mpz_cmp_ui(mpq_denref(q), 1) == 0)
+        out += "/1"; // GMP leaves it out
     mpq_clear(q);
     return out;
 }

@@ -188,13 +188,13 @@ Input load_input(const InputOptions& options)
     if (input.surface.mesh.triangles.empty())
         throw InputError::in_file(options.input, "has no skinned triangles; there is nothing to bound");
     const auto& weights = input.surface.weights;
+    const std::string influences = fmt::format("{:.1f}", static_cast<double>(weights.node.size()) / static_cast<double>(weights.vertex_count()));
     input.report.insert(input.report.begin(),
-                        fmt::format("{}: {}, {}, {}, {:.1f} influences per vertex; motion '{}', {}", input.name,
-                                    counted(input.surface.mesh.vertices.size(), "vertex", "vertices"),
-                                    counted(input.surface.mesh.triangles.size(), "triangle", "triangles"),
-                                    counted(weights.node_count, "simulation node", "simulation nodes"),
-                                    static_cast<double>(weights.node.size()) / static_cast<double>(weights.vertex_count()), input.clip.name,
-                                    counted(input.clip.frames.size(), "frame", "frames")));
+                        {fmt::format("{}: {}, {}", input.name, counted(input.surface.mesh.vertices.size(), "vertex", "vertices"),
+                                     counted(input.surface.mesh.triangles.size(), "triangle", "triangles")),
+                         fmt::format("{}, {} influences per vertex; motion '{}', {}",
+                                     counted(weights.node_count, "simulation node", "simulation nodes"), influences, input.clip.name,
+                                     counted(input.clip.frames.size(), "frame", "frames"))});
     return input;
 }
 

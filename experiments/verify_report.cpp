@@ -49,9 +49,10 @@ void print_table(const Input& input, const VerifyOptions& options, const VerifyT
                         fmt::format("{:.3f}", mean.ratio), fmt::format("{:.3f}", level.ratio_max), fmt::format("{:.3f}", mean.box),
                         fmt::format("{:.3f}", mean.interval), fmt::format("{:.3f}", mean.corner), fmt::format("{:.0e}", mean.rounding)});
     }
-    fmt::print("{}\n", table({"level", "BVs", "mean n", "proven", "violated", "ratio", "max", "box", "interval", "corner", "rounding"}, rows));
-    fmt::print("ratio: bound radius / true radius, mean and maximum. box, interval, corner, rounding: what the bound\n"
-               "gives away per direction, and why, as a share of the true radius.\n\n");
+    fmt::print("{}\n", table({"level", "BVs", "n", "proven", "violated", "ratio", "max", "box", "interval", "corner", "rounding"}, rows));
+    fmt::print("n: simulation nodes per BV, mean. ratio, max: bound radius / true radius.\n"
+               "box, interval, corner, rounding: what the bound gives away per direction, and\n"
+               "why, as a mean share of the true radius.\n\n");
 
     for (const auto& example : totals.examples)
         fmt::print("violated: frame {}, level {}, BV {}, {}: {}: {}\n", example.frame, example.level, example.violation.bv,

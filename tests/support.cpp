@@ -59,13 +59,20 @@ static std::string slurp(const std::filesystem::path& path)
     return {std::istreambuf_iterator<char>(in), {}};
 }
 
-Run cinch(const std::string& arguments)
+static Run run(const std::string& prefix, const std::string& arguments)
 {
     const TemporaryFolder folder;
     const std::string out = (folder.path() / "out").string(), err = (folder.path() / "err").string();
-    const std::string command = std::string("'") + CINCH_PROGRAM + "' " + arguments + " >'" + out + "' 2>'" + err + "' </dev/null";
+    const std::string command = prefix + "'" + CINCH_PROGRAM + "' " + arguments + " >'" + out + "' 2>'" + err + "' </dev/null";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), slurp(out), slurp(err)};
+}
+
+Run cinch(const std::string& arguments) { return run("", arguments); }
+
+Run cinch_interrupted(const std::string& arguments, int seconds)
+{
+    return run("timeout --preserve-status -s INT " + std::to_string(seconds) + " ", arguments);
 }
 
 Example example(std::size_t vertices, std::size_t nodes)

@@ -33,6 +33,8 @@ struct Run {
 };
 /// Runs the program with these arguments (a shell line) and waits.
 Run cinch(const std::string& arguments);
+/// The same, with an interrupt (Ctrl-C) after so many seconds.
+Run cinch_interrupted(const std::string& arguments, int seconds);
 
 /// A small closed surface with kernel weights: `vertices` on a bumpy sphere, `nodes` simulation nodes.
 struct Example {

@@ -14,7 +14,7 @@ struct Provenance {
 };
 Provenance provenance(int threads, std::uint64_t seed);
 
-/// One line for people.
+/// Two lines for people.
 std::string describe(const Provenance& p);
 
 } // namespace cinch

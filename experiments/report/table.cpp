@@ -16,7 +16,7 @@ std::string table(const std::vector<std::string>& header, const std::vector<std:
     std::string out;
     auto add = [&](const std::vector<std::string>& row) {
         for (std::size_t c = 0; c < row.size(); ++c)
-            out += std::string(c == 0 ? 0 : 2, ' ') + std::string(width[c] - row[c].size(), ' ') + row[c];
+            out += std::string(c == 0 ? 0 : 1, ' ') + std::string(width[c] - row[c].size(), ' ') + row[c];
         out += '\n';
     };
     add(header);

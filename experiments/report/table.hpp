@@ -6,7 +6,7 @@
 
 namespace cinch {
 
-/// Right-aligned columns under a header, two blanks apart.
+/// Right-aligned columns under a header, one blank apart.
 std::string table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows);
 
 } // namespace cinch

@@ -84,7 +84,7 @@ TEST_CASE("fractions are in lowest terms")
 {
     CHECK(as_fraction(Exact(0.75)) == "3/4");
     CHECK(as_fraction(Exact(-2.5)) == "-5/2");
-    CHECK(as_fraction(Exact(12)) == "12");
-    CHECK(as_fraction(Exact(0)) == "0");
-    CHECK(as_fraction(Exact(0x1p-60) * Exact(0x1p60)) == "1");
+    CHECK(as_fraction(Exact(12)) == "12/1");
+    CHECK(as_fraction(Exact(0)) == "0/1");
+    CHECK(as_fraction(Exact(0x1p-60) * Exact(0x1p60)) == "1/1");
 }

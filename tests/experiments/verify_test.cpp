@@ -121,3 +121,18 @@ TEST_CASE("reference meshes and characters are proven")
                 CHECK_THAT(run.out, Catch::Contains("13 of 130 vertices had weights that sum to less than 0.999 or more than 1.001 (sums 0.2001"));
         }
 }
+
+TEST_CASE("an interrupt keeps what is done, says so, and exits 130")
+{
+    // Interrupts until the process has installed its handler and verified at least one frame.
+    for (int seconds : {3, 10, 30}) {
+        const test::Run run = test::cinch_interrupted("verify brain-3500 --frames 100000", seconds);
+        REQUIRE(run.status == 130);
+        if (run.err.empty())
+            continue; // interrupted before there was anything to keep
+        CHECK_THAT(run.err, Catch::StartsWith("cinch: interrupted after ") && Catch::EndsWith(" of 100000 frames\n"));
+        CHECK_THAT(run.out, Catch::Contains(" proven, 0 violated\n"));
+        return;
+    }
+    FAIL("never got to a first frame");
+}
