@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <limits>
 #include <map>
 #include <sstream>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "experiments/corners.hpp"
 #include "experiments/report/provenance.hpp"
 #include "experiments/verify.hpp"
 #include "toolkit/deform/motion.hpp"
@@ -88,6 +90,27 @@ void add_verify(CLI::App& app, VerifyOptions& o)
                    "Exit status: 0 all proven, 1 a bound violated, 2 bad usage or input,\n"
                    "130 interrupted (results so far are printed).");
 }
+
+void add_corners(CLI::App& app, CornersOptions& o)
+{
+    CLI::App& command = *app.add_subcommand("corners", "true corners of a weight space: count, list, exact maxima");
+    auto option = [&](const char* name, auto& value, const std::string& description) { return command.add_option(name, value, wrapped(description)); };
+    option("CASE", o.files, "case files, see below")->required()->option_text("FILE...");
+    command.add_flag("--json", o.json, "JSON Lines on standard output and nothing else");
+    command.add_flag("--list", o.list, wrapped("print every corner, as fractions p/q, as they are found"));
+    option("--limit", o.limit, "most corners to list per file [all]")->check(CLI::Range(1, std::numeric_limits<int>::max()))->option_text("N");
+    command.footer("A case file is {\"n\":3,\"l\":[...],\"h\":[...],\"b\":[[...],...]}: weight intervals with\n"
+                   "0 <= l <= h <= 1 and rows of extrema. Numbers are JSON numbers, or strings that are\n"
+                   "decimal or hexadecimal floating point (\"0x1.8p-1\").\n"
+                   "\n"
+                   "Examples:\n"
+                   "  cinch corners space.json               count, exact maximum, Eq. 12, bound per row\n"
+                   "  cinch corners *.json --json            the same as JSON Lines\n"
+                   "  cinch corners space.json --list --limit 10\n"
+                   "\n"
+                   "Exit status: 0 done, 1 a toolkit bound lies below the exact maximum, 2 bad usage or\n"
+                   "input (other files are still answered), 130 interrupted.");
+}
 #endif
 
 } // namespace
@@ -98,9 +121,11 @@ int main(int argc, char** argv)
     app.require_subcommand(1);
     app.set_version_flag("--version", describe(provenance(0, 0)).substr(0, describe(provenance(0, 0)).find(',')));
     app.footer("'cinch COMMAND --help' says more, with examples.");
-    VerifyOptions verify_options;
 #ifdef CINCH_EXACT
+    VerifyOptions verify_options;
+    CornersOptions corners_options;
     add_verify(app, verify_options);
+    add_corners(app, corners_options);
 #endif
     if (argc > 1 && argv[1][0] != '-' && app.get_subcommands([&](const CLI::App* s) { return s->get_name() == argv[1]; }).empty()) {
         fmt::print(stderr, "cinch: unknown command '{}' (see 'cinch --help')\n", argv[1]);
@@ -118,6 +143,8 @@ int main(int argc, char** argv)
 #ifdef CINCH_EXACT
         if (app.got_subcommand("verify"))
             return verify(verify_options);
+        if (app.got_subcommand("corners"))
+            return corners(corners_options);
 #endif
     } catch (const InputError& error) {
         fmt::print(stderr, "cinch: {}\n", error.what());

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/corners.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "exact/answers.hpp"
+#include "exact/corners.hpp"
+#include "experiments/case_file.hpp"
+#include "experiments/report/interrupt.hpp"
+#include "toolkit/bounds/rounding.hpp"
+#include "toolkit/surface/input_error.hpp"
+
+namespace cinch {
+namespace {
+
+using nlohmann::json;
+
+// The toolkit's proven bound for extrema that are exact as given: method `limited` without a box.
+double toolkit_bound(WeightSpace space, const std::vector<double>& b)
+{
+    std::vector<std::pair<double, double>> scratch;
+    return std::min({*std::max_element(b.begin(), b.end()), dual_bound(space, b, second_largest(b), Rounding::proven),
+                     dual_bound(space, b, best_lambda(space, b, scratch), Rounding::proven)});
+}
+
+struct Row {
+    std::optional<exact::Answer> answer;
+    double bound = 0;
+};
+
+void print_record(const std::string& file, bool feasible, const exact::CornerCount& count, const std::vector<Row>& rows)
+{
+    json record{{"experiment", "corners"}, {"file", file}, {"feasible", feasible}, {"vertex_count", nullptr}, {"rows", json::array()}};
+    if (count.count)
+        record["vertex_count"] = *count.count;
+    else
+        record["vertex_count_reason"] = count.reason;
+    for (const Row& row : rows) {
+        json r{{"exact_max", nullptr}, {"eq12", nullptr}, {"bound", nullptr}, {"lambda", nullptr}};
+        if (row.answer) {
+            r = {{"exact_max", row.answer->maximum}, {"eq12", nullptr}, {"bound", fmt::format("{:a}", row.bound)}, {"lambda", row.answer->lambda},
+                 {"corner", row.answer->corner}, {"bound_holds", row.answer->bound_holds}};
+            if (row.answer->eq12)
+                r["eq12"] = *row.answer->eq12;
+        }
+        record["rows"].push_back(r);
+    }
+    fmt::print("{}\n", record.dump(-1, ' ', false, json::error_handler_t::replace));
+}
+
+void print_text(const std::string& file, bool feasible, const exact::CornerCount& count, const std::vector<Row>& rows)
+{
+    fmt::print("{}: {}, {}\n", file, feasible ? "feasible" : "infeasible: no weights sum to 1", count.count ? *count.count + " corners" : count.reason);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (!rows[i].answer)
+            continue;
+        const exact::Answer& a = *rows[i].answer;
+        fmt::print("  b[{}]  maximum {}\n        Eq. 12  {}\n        bound   {:a} = {:.17g}{}\n        lambda  {}\n", i, a.maximum,
+                   a.eq12 ? *a.eq12 : "undefined for n = 1", rows[i].bound, rows[i].bound, a.bound_holds ? "" : ", BELOW the maximum", a.lambda);
+    }
+}
+
+// False if interrupted.
+bool list_corners(const std::string& file, WeightSpace space, const CornersOptions& options)
+{
+    std::uint64_t listed = 0;
+    exact::visit_corners(space, [&](const exact::CornerRun& run, const exact::Corner& corner) {
+        const std::vector<std::string> weights = exact::weights_of(space, run, corner);
+        if (options.json)
+            fmt::print("{}\n", json{{"experiment", "corners"}, {"file", file}, {"corner", weights}}.dump(-1, ' ', false, json::error_handler_t::replace));
+        else
+            fmt::print("{}\n", fmt::join(weights, " "));
+        return ++listed != options.limit && !interrupted();
+    });
+    return !interrupted();
+}
+
+} // namespace
+
+int corners(const CornersOptions& options)
+{
+    require_default_arithmetic();
+    catch_interrupt();
+    int status = 0;
+    for (const std::string& file : options.files) {
+        if (interrupted())
+            return 130;
+        try {
+            const Case problem = read_case(file);
+            const bool feasible = exact::is_feasible(problem.space());
+            const exact::CornerCount count = exact::count_corners(problem.space());
+            std::vector<Row> rows;
+            for (const std::vector<double>& b : problem.b) {
+                Row row{std::nullopt, toolkit_bound(problem.space(), b)};
+                row.answer = exact::answer(problem.space(), b, row.bound);
+                if (row.answer && !row.answer->bound_holds)
+                    status = std::max(status, 1);
+                rows.push_back(std::move(row));
+            }
+            (options.json ? print_record : print_text)(file, feasible, count, rows);
+            if (options.list && !list_corners(file, problem.space(), options))
+                return 130;
+        } catch (const InputError& error) {
+            std::fflush(stdout);
+            fmt::print(stderr, "cinch: {}\n", error.what());
+            status = 2;
+        }
+    }
+    return status;
+}
+
+} // namespace cinch
