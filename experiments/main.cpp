@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <cstdio>
 #include <limits>
 #include <map>
+#include <set>
 #include <sstream>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "experiments/corners.hpp"
+#include "experiments/fuzz/fuzz.hpp"
 #include "experiments/report/provenance.hpp"
 #include "experiments/verify.hpp"
 #include "toolkit/deform/motion.hpp"
@@ -111,6 +114,45 @@ void add_corners(CLI::App& app, CornersOptions& o)
                    "Exit status: 0 done, 1 a toolkit bound lies below the exact maximum, 2 bad usage or\n"
                    "input (other files are still answered), 130 interrupted.");
 }
+
+void add_fuzz(CLI::App& app, FuzzOptions& o)
+{
+    CLI::App& command = *app.add_subcommand("fuzz", "compare every bounding method with the exact side on random hard cases");
+    auto option = [&](const char* name, auto& value, const std::string& description) { return command.add_option(name, value, wrapped(description)); };
+    option("--seconds", o.seconds, "stop after so many seconds")->check(CLI::Range(0.0, 1e9))->option_text("X");
+    option("--cases", o.cases, "stop after so many cases [100,000 if no --seconds]")->option_text("N");
+    option("--seed", o.seed, "case i of a seed is always the same [0]")->option_text("N");
+    std::set<std::string> families;
+    for (const std::string_view name : fuzz_families())
+        families.emplace(name);
+    option("--family", o.family, fmt::format("only this family: {} [all in turn]", fmt::join(fuzz_families(), ", ")))
+        ->check(CLI::IsMember(families))->option_text("NAME");
+    command.add_option_function<std::string>("--shard", [&o](const std::string& text) {
+        unsigned long long i = 0, n = 0;
+        int used = 0;
+        if (std::sscanf(text.c_str(), "%llu/%llu%n", &i, &n, &used) != 2 || used != static_cast<int>(text.size()) || n == 0 || i >= n)
+            throw CLI::ValidationError("--shard", "expected I/N with 0 <= I < N, found '" + text + "'");
+        o.shard = i;
+        o.shards = n;
+    }, wrapped("run every N-th case, beginning with the I-th, I from 0"))->option_text("I/N");
+    option("--resume", o.resume, "keep the state in this file, and continue from it if it is there")->option_text("FILE");
+    option("--corpus", o.corpus, "where shrunk failures are saved [data/hard]")->option_text("DIR");
+    option("--threads", o.threads, "threads [all cores]")->check(CLI::Range(1, 1024))->option_text("N");
+    command.add_flag("--json", o.json, "JSON Lines on standard output and nothing else");
+    option("--sabotage", o.defect,
+           "for tests: plant a defect: no-rounding, lower-h and small-box must be found, wrong-lambda and sum-order must prove harmless; nothing is saved")
+        ->transform(one_of<Defect>({{"no-rounding", Defect::no_rounding}, {"wrong-lambda", Defect::wrong_lambda}, {"lower-h", Defect::lower_h},
+                                    {"sum-order", Defect::sum_order}, {"small-box", Defect::small_box}}))
+        ->option_text("KIND");
+    command.footer("Examples:\n"
+                   "  cinch fuzz --seconds 600                 ten minutes, all families\n"
+                   "  cinch fuzz --cases 1000000 --resume s    can be stopped and continued at any time\n"
+                   "  cinch fuzz --shard 0/4 --seconds 600     one of four machines\n"
+                   "\n"
+                   "A failure is shrunk to the smallest case that still fails and saved as JSON.\n"
+                   "Exit status: 0 no violation, 1 a violation, 2 bad usage, 130 interrupted (the\n"
+                   "summary is printed).");
+}
 #endif
 
 } // namespace
@@ -125,7 +167,9 @@ int main(int argc, char** argv)
     VerifyOptions verify_options;
     CornersOptions corners_options;
     add_verify(app, verify_options);
+    FuzzOptions fuzz_options;
     add_corners(app, corners_options);
+    add_fuzz(app, fuzz_options);
 #endif
     if (argc > 1 && argv[1][0] != '-' && app.get_subcommands([&](const CLI::App* s) { return s->get_name() == argv[1]; }).empty()) {
         fmt::print(stderr, "cinch: unknown command '{}' (see 'cinch --help')\n", argv[1]);
@@ -145,6 +189,13 @@ int main(int argc, char** argv)
             return verify(verify_options);
         if (app.got_subcommand("corners"))
             return corners(corners_options);
+        if (app.got_subcommand("fuzz")) {
+            if (fuzz_options.seconds == 0 && fuzz_options.cases == 0)
+                fuzz_options.cases = 100000;
+            if (fuzz_options.corpus.empty() && fuzz_options.defect == Defect::none)
+                fuzz_options.corpus = "data/hard";
+            return fuzz(fuzz_options);
+        }
 #endif
     } catch (const InputError& error) {
         fmt::print(stderr, "cinch: {}\n", error.what());

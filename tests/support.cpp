@@ -75,6 +75,11 @@ Run cinch_interrupted(const std::string& arguments, int seconds)
     return run("timeout --preserve-status -s INT " + std::to_string(seconds) + " ", arguments);
 }
 
+Run cinch_killed(const std::string& arguments, double seconds)
+{
+    return run("timeout -s KILL " + std::to_string(seconds) + " ", arguments);
+}
+
 Example example(std::size_t vertices, std::size_t nodes)
 {
     Example out;

@@ -35,6 +35,8 @@ struct Run {
 Run cinch(const std::string& arguments);
 /// The same, with an interrupt (Ctrl-C) after so many seconds.
 Run cinch_interrupted(const std::string& arguments, int seconds);
+/// The same, killed outright after so many seconds.
+Run cinch_killed(const std::string& arguments, double seconds);
 
 /// A small closed surface with kernel weights: `vertices` on a bumpy sphere, `nodes` simulation nodes.
 struct Example {

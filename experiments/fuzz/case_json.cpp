@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "experiments/fuzz/fuzz_case.hpp"
+#include "toolkit/surface/input_error.hpp"
+
+namespace cinch {
+namespace {
+
+using nlohmann::json;
+
+json hex(double x) { return fmt::format("{:a}", x); }
+
+json hex_array(std::span<const double> values)
+{
+    json out = json::array();
+    for (double x : values)
+        out.push_back(hex(x));
+    return out;
+}
+
+std::vector<double> numbers(const json& array, const std::string& file, const std::string& field, std::size_t count)
+{
+    std::vector<double> out;
+    for (const json& value : array) {
+        std::size_t used = 0;
+        const std::string text = value.get<std::string>();
+        out.push_back(std::stod(text, &used));
+        if (used != text.size() || !std::isfinite(out.back()))
+            throw InputError::in_file(file, fmt::format("field {}: '{}' is not a finite number", field, text));
+    }
+    if (out.size() != count)
+        throw InputError::in_file(file, fmt::format("field {}: {} numbers, expected {}", field, out.size(), count));
+    return out;
+}
+
+} // namespace
+
+std::string to_json(const FuzzCase& c, const std::string& fault)
+{
+    json out{{"family", c.family}, {"n", c.nodes()}, {"fault", fault}};
+    if (!c.is_surface()) {
+        out["l"] = hex_array(c.space.l);
+        out["h"] = hex_array(c.space.h);
+        out["b"] = json::array({hex_array(c.space.b[0])});
+        return out.dump();
+    }
+    out["kdop"] = c.kdop;
+    for (const Vec3& p : c.rest)
+        out["rest"].push_back(hex_array({p.data(), 3}));
+    for (const auto& row : c.weights)
+        out["weights"].push_back(hex_array(row));
+    for (const AffineMap& map : c.maps)
+        out["maps"].push_back(hex_array({&map.m[0][0], 12}));
+    return out.dump();
+}
+
+FuzzCase fuzz_case_from_json(const std::string& text, const std::string& file)
+{
+    FuzzCase out;
+    try {
+        const json root = json::parse(text);
+        out.family = root.value("family", "");
+        if (!root.contains("rest")) {
+            out.space = parse_case(text, file);
+            if (out.space.b.empty())
+                throw InputError::in_file(file, "field b has no row");
+            return out;
+        }
+        const auto n = root.at("n").get<std::size_t>();
+        out.kdop = root.at("kdop").get<int>();
+        for (const json& p : root.at("rest")) {
+            const auto x = numbers(p, file, "rest", 3);
+            out.rest.emplace_back(x[0], x[1], x[2]);
+        }
+        for (const json& row : root.at("weights"))
+            out.weights.push_back(numbers(row, file, "weights", n));
+        for (const json& map : root.at("maps")) {
+            const auto x = numbers(map, file, "maps", 12);
+            out.maps.emplace_back();
+            std::copy(x.begin(), x.end(), &out.maps.back().m[0][0]);
+        }
+        if (out.maps.size() != n || out.weights.size() != out.rest.size())
+            throw InputError::in_file(file, "fields n, rest, weights and maps contradict each other");
+    } catch (const InputError&) {
+        throw;
+    } catch (const std::exception& error) {
+        throw InputError::in_file(file, error.what());
+    }
+    return out;
+}
+
+} // namespace cinch

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/fuzz/fuzz.hpp"
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <set>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <unistd.h>
+
+#include "experiments/report/interrupt.hpp"
+#include "experiments/report/number.hpp"
+#include "experiments/report/provenance.hpp"
+#include "toolkit/surface/read_mesh.hpp"
+
+namespace cinch {
+namespace {
+
+using nlohmann::json;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::uint64_t block_cases = 2048;
+
+/// What is done so far. Cases [0, next) of the shard are finished, each once.
+struct State {
+    std::uint64_t next = 0, violations = 0;
+    double seconds = 0;
+};
+
+class Session {
+public:
+    explicit Session(const FuzzOptions& options)
+        : options_(options), threads_(options.threads > 0 ? options.threads : tbb::info::default_concurrency()), terminal_(isatty(STDERR_FILENO) == 1)
+    {
+        load_state();
+    }
+
+    int run()
+    {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads_));
+        catch_interrupt();
+        start_ = Clock::now();
+        while (!interrupted() && !finished()) {
+            run_block();
+            if (Clock::now() - saved_ > std::chrono::seconds(1))
+                save_state();
+            show();
+        }
+        save_state();
+        if (terminal_)
+            fmt::print(stderr, "\r\x1b[K");
+        summarise();
+        return state_.violations ? 1 : interrupted() ? 130 : 0;
+    }
+
+private:
+    double elapsed() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+    bool finished() const
+    {
+        return (options_.cases > 0 && state_.next >= options_.cases) || (options_.seconds > 0 && elapsed() >= options_.seconds);
+    }
+
+    void run_block()
+    {
+        const std::uint64_t first = state_.next;
+        const std::uint64_t count = options_.cases > 0 ? std::min(block_cases, options_.cases - first) : block_cases;
+        std::vector<std::string> faults(count);
+        tbb::parallel_for(tbb::blocked_range<std::uint64_t>(0, count, 64), [&](const auto& range) {
+            for (std::uint64_t i = range.begin(); i < range.end(); ++i)
+                faults[i] = find_fault(draw(first + i), options_.defect);
+        });
+        for (std::uint64_t i = 0; i < count; ++i)
+            if (!faults[i].empty())
+                report(first + i);
+        state_.next = first + count;
+    }
+
+    FuzzCase draw(std::uint64_t of_shard) const
+    {
+        return draw_case(options_.seed, of_shard * options_.shards + options_.shard, options_.family);
+    }
+
+    void report(std::uint64_t of_shard)
+    {
+        ++state_.violations;
+        const FuzzCase found = draw(of_shard);
+        // The first failure of each family is shrunk: a broken bound fails everywhere.
+        if (!shrunk_.insert(found.family).second)
+            return;
+        const FuzzCase smallest = shrink(found, options_.defect);
+        const std::string text = to_json(smallest, find_fault(smallest, options_.defect));
+        std::string place;
+        if (!options_.corpus.empty()) {
+            std::filesystem::create_directories(options_.corpus);
+            const auto path = std::filesystem::path(options_.corpus) / fmt::format("{}-{:x}.json", smallest.family, std::hash<std::string>{}(text));
+            std::ofstream(path) << text << '\n';
+            place = path.string();
+        }
+        if (terminal_)
+            fmt::print(stderr, "\r\x1b[K");
+        if (options_.json) {
+            json record = json::parse(text);
+            record["experiment"] = "fuzz";
+            record["index"] = of_shard * options_.shards + options_.shard;
+            record["saved"] = place;
+            fmt::print("{}\n", record.dump());
+        } else {
+            fmt::print("violated: case {} of family {}, shrunk to n = {}:\n  {}\n  {}\n", of_shard * options_.shards + options_.shard, found.family,
+                       smallest.nodes(), find_fault(smallest, options_.defect), place.empty() ? text : place);
+        }
+        std::fflush(stdout);
+    }
+
+    void load_state()
+    {
+        if (options_.resume.empty() || !std::filesystem::exists(options_.resume))
+            return;
+        try {
+            const json s = json::parse(read_bytes(options_.resume));
+            if (s.at("seed") != options_.seed || s.at("family") != options_.family || s.at("shard") != options_.shard || s.at("shards") != options_.shards)
+                throw InputError::in_file(options_.resume, "was written with another --seed, --family or --shard; use the same, or another file");
+            state_ = {s.at("next"), s.at("violations"), s.at("seconds")};
+            resumed_from_ = state_.next;
+        } catch (const json::exception& error) {
+            throw InputError::in_file(options_.resume, std::string("is not a state file: ") + error.what());
+        }
+    }
+
+    // To a temporary file first, then renamed over: at any moment the file holds one whole state.
+    void save_state()
+    {
+        saved_ = Clock::now();
+        if (options_.resume.empty())
+            return;
+        const std::string temporary = options_.resume + ".tmp";
+        {
+            std::ofstream out(temporary);
+            out << json{{"seed", options_.seed}, {"family", options_.family}, {"shard", options_.shard}, {"shards", options_.shards},
+                        {"next", state_.next}, {"violations", state_.violations}, {"seconds", state_.seconds + elapsed()}}
+                       .dump()
+                << '\n';
+            if (!out.flush())
+                throw InputError::in_file(temporary, "cannot be written");
+        }
+        std::filesystem::rename(temporary, options_.resume);
+    }
+
+    void show() const
+    {
+        if (!terminal_)
+            return;
+        const double now = elapsed();
+        std::string left;
+        if (options_.seconds > 0)
+            left = ", " + duration(std::max(0.0, options_.seconds - now)) + " left";
+        fmt::print(stderr, "\r\x1b[K{} cases, {} per second, {} violations{}", grouped(state_.next),
+                   grouped(static_cast<std::size_t>(static_cast<double>(state_.next - resumed_from_) / std::max(now, 1e-3))), grouped(state_.violations), left);
+        std::fflush(stderr);
+    }
+
+    void summarise() const
+    {
+        const Provenance from = provenance(threads_, options_.seed);
+        const double seconds = state_.seconds + elapsed();
+        if (options_.json) {
+            fmt::print("{}\n", json{{"experiment", "fuzz"}, {"seed", options_.seed}, {"cases", state_.next}, {"violations", state_.violations},
+                                    {"seconds", seconds}, {"family", options_.family}, {"shard", options_.shard}, {"shards", options_.shards},
+                                    {"version", from.version}, {"commit", from.commit}, {"compiler", from.compiler}, {"flags", from.flags},
+                                    {"cpu", from.cpu}, {"simd_target", from.simd}, {"threads", from.threads}}
+                                   .dump());
+            return;
+        }
+        fmt::print("{} cases, {} violations\n{}, {} cases per second\n{}\n", grouped(state_.next), grouped(state_.violations), duration(seconds),
+                   grouped(static_cast<std::size_t>(static_cast<double>(state_.next) / std::max(seconds, 1e-3))), describe(from));
+    }
+
+    const FuzzOptions& options_;
+    int threads_;
+    bool terminal_;
+    State state_;
+    std::uint64_t resumed_from_ = 0;
+    std::set<std::string> shrunk_;
+    Clock::time_point start_, saved_ = Clock::now();
+};
+
+} // namespace
+
+int fuzz(const FuzzOptions& options) { return Session(options).run(); }
+
+} // namespace cinch

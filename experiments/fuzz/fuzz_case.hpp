@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "experiments/case_file.hpp"
+#include "toolkit/surface/skin.hpp"
+
+namespace cinch {
+
+/// One differential test: a weight space with rows of extrema, or, where `rest` is not empty, a small surface.
+struct FuzzCase {
+    std::string family;
+    Case space;                               ///< of a weight-space case; b has one row
+    std::vector<Vec3> rest;                   ///< vertices of a surface case
+    std::vector<std::vector<double>> weights; ///< per vertex, dense over the nodes, dyadic with sum 1
+    std::vector<AffineMap> maps;              ///< per node
+    int kdop = 6;
+
+    bool is_surface() const { return !rest.empty(); }
+    std::size_t nodes() const { return is_surface() ? maps.size() : space.l.size(); }
+};
+
+/// The families that cases are drawn from, by name.
+std::vector<std::string_view> fuzz_families();
+
+/// Case `index` of a seed: the same whatever else is drawn, on any thread. `family` empty: each in turn.
+FuzzCase draw_case(std::uint64_t seed, std::uint64_t index, std::string_view family);
+
+/// Defects planted on purpose, to see what the comparison makes of them.
+enum class Defect {
+    none,
+    no_rounding,  ///< error terms dropped: must be found
+    wrong_lambda, ///< λ moved away from the optimum: harmless, must stay proven
+    lower_h,      ///< one h lowered by 2^-53: must be found
+    sum_order,    ///< sums taken backwards: harmless, the error bound holds in any order
+    small_box,    ///< the tightest rest box shrunk by one ulp: must be found
+};
+
+/// Empty if every method of the toolkit holds against the exact side; otherwise what is wrong.
+std::string find_fault(const FuzzCase& problem, Defect defect);
+
+/// The smallest case found by dropping nodes and vertices and simplifying numbers that still has a fault.
+FuzzCase shrink(FuzzCase problem, Defect defect);
+
+/// A case as one JSON object (hexadecimal floats), readable by `cinch corners` if it is a weight space, and back.
+std::string to_json(const FuzzCase& problem, const std::string& fault);
+FuzzCase fuzz_case_from_json(const std::string& text, const std::string& file);
+
+} // namespace cinch
