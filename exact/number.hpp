@@ -23,8 +23,9 @@ using DirectedRounding = CGAL::Protect_FPU_rounding<true>;
 inline Exact maximum(const Exact& a, const Exact& b) { return a < b ? b : a; }
 inline Interval maximum(const Interval& a, const Interval& b)
 {
-    const double inf = std::max(a.inf(), b.inf()), sup = std::max(a.sup(), b.sup());
-    return inf <= sup ? Interval(inf, sup) : Interval::largest(); // NaN where both ends overflowed
+    if (!(a.inf() <= a.sup() && b.inf() <= b.sup()))
+        return Interval::largest(); // an end is NaN, after an overflow
+    return Interval(std::max(a.inf(), b.inf()), std::max(a.sup(), b.sup()));
 }
 inline Interval minimum(const Interval& a, const Interval& b) { return -maximum(-a, -b); }
 inline Exact absolute(const Exact& x) { return x < Exact(0) ? -x : x; }

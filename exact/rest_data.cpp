@@ -22,6 +22,10 @@ std::string hex(double x)
 
 bool contains(double centre, double half, double x)
 {
+    if (!std::isfinite(centre) || !(half >= 0))
+        return false;
+    if (std::isinf(half)) // so large a box that its half overflowed
+        return true;
     const Exact offset = Exact(x) - Exact(centre);
     return offset <= Exact(half) && -offset <= Exact(half);
 }
@@ -31,8 +35,10 @@ bool contains(double centre, double half, double x)
 void require_dyadic_weights(const DeformableSurface& surface)
 {
     const Weights& weights = surface.weights;
-    if (weights.vertex_count() != surface.mesh.vertices.size())
+    if (weights.row.empty() || weights.row.front() != 0 || weights.vertex_count() != surface.mesh.vertices.size())
         refuse("the weights are not those of the mesh");
+    if (!std::is_sorted(weights.row.begin(), weights.row.end()) || weights.row.back() != weights.node.size() || weights.node.size() != weights.weight.size())
+        refuse("the rows of the weights do not fit together");
     for (std::size_t k = 0; k < weights.vertex_count(); ++k) {
         const Weights::Row row = weights.of(k);
         std::int64_t units = 0;
@@ -54,6 +60,13 @@ void require_dyadic_weights(const DeformableSurface& surface)
 void require_tree(const DeformableSurface& surface, const Bvh& bvh)
 {
     const std::size_t triangles = surface.mesh.triangles.size();
+    for (const Vec3& v : surface.mesh.vertices)
+        if (!(std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2])))
+            refuse("a rest vertex is not finite");
+    for (const Triangle& t : surface.mesh.triangles)
+        for (std::uint32_t v : t)
+            if (v >= surface.mesh.vertices.size())
+                refuse("a triangle has a vertex that does not exist");
     if (bvh.triangle.size() != triangles || bvh.bvs.empty() != (triangles == 0))
         refuse("the BVH is not over the mesh's triangles");
     std::vector<bool> seen(triangles, false), child(bvh.bvs.size(), false);

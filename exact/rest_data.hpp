@@ -12,7 +12,8 @@ namespace cinch::exact {
 /// Every vertex's weights are positive multiples of 2^-53 that sum to exactly 1. Throws std::invalid_argument.
 void require_dyadic_weights(const DeformableSurface& surface);
 
-/// The BVs form a tree whose leaves hold every triangle once. Throws std::invalid_argument.
+/// Rest vertices are finite, triangles have vertices that exist, and the BVs form a tree whose leaves hold every triangle once.
+/// Throws std::invalid_argument.
 void require_tree(const DeformableSurface& surface, const Bvh& bvh);
 
 /// The vertices of one BV's triangles, each once, ascending.

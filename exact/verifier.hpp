@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,7 +17,7 @@ enum Statement : std::uint8_t {
     rest_data = 1,         ///< the BV's rest box and weight intervals hold all its vertices
     weight_space = 2,      ///< bound ≥ exact maximum over W' of the exact extrema of the deformed rest box (not for `vertices`)
     exact_vertices = 4,    ///< bound ≥ every vertex deformed in real arithmetic
-    computed_vertices = 8, ///< bound ≥ every vertex as evaluate_vertex computes it
+    computed_vertices = 8, ///< bound ≥ every vertex as evaluate_vertex computes it; only +∞ contains one that is not finite
 };
 std::string name_of(Statement statement);
 
@@ -46,14 +47,17 @@ struct FrameVerdict {
     std::vector<BvReport> bvs;
     std::size_t decided_by_filter = 0; ///< bounds that interval arithmetic settled; the rest took exact arithmetic
     std::vector<Violation> examples;   ///< the first few, in order of BV
+    std::vector<double> lambda;        ///< per BV and direction: bound ≥ D(λ) certifies the weight-space statement; 0 for `vertices`
+    std::map<std::size_t, std::string> exact_lambda; ///< places where no double λ was found to do so: λ as "p/q"
 };
 
 /// Proves the bounds of one surface's BVH, frame by frame, in exact arithmetic behind an interval filter. It reads the
 /// toolkit's data and repeats none of its algorithms. Both statements of the guarantee are decided for every BV and direction.
 class Verifier {
 public:
-    /// Checks the rest data of every BV at once. Throws std::invalid_argument if the tree is no tree over the mesh's triangles,
-    /// or the weights are not dyadic and convex. Keeps references to both.
+    /// Checks the rest data of every BV at once: both must stay as they are from here on, and alive. Throws std::invalid_argument
+    /// if the tree is no tree over the mesh's triangles, a rest vertex is not finite, or the weights are not dyadic and convex;
+    /// std::runtime_error for a changed floating-point environment.
     Verifier(const DeformableSurface& surface, const Bvh& bvh);
 
     /// Why rest data fail, per BV; empty strings where they hold.

@@ -11,6 +11,7 @@
 #include "experiments/case_file.hpp"
 #include "experiments/report/interrupt.hpp"
 #include "toolkit/bounds/rounding.hpp"
+#include "toolkit/deform/arithmetic.hpp"
 #include "toolkit/surface/input_error.hpp"
 
 namespace cinch {

@@ -80,7 +80,7 @@ void script(Input& input, const InputOptions& options, std::size_t default_nodes
     input.clip = scripted_clip(*motion, nodes.position, options.frames ? options.frames : 4);
     input.clip.name = motion_name;
     if (nodes.position.size() < wanted)
-        input.report.push_back(fmt::format("only {} distinct places for {} simulation nodes", grouped(nodes.position.size()), grouped(wanted)));
+        input.report.push_back(fmt::format("only {} for {} simulation nodes", counted(nodes.position.size(), "distinct place", "distinct places"), grouped(wanted)));
     if (alone)
         input.report.push_back(fmt::format("{} beyond the reach of every simulation node; each follows its nearest one", counted(alone, "vertex lies", "vertices lie")));
 }

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <cstdio>
 #include <limits>
-#include <map>
-#include <set>
 #include <sstream>
 
 #include <CLI/CLI.hpp>
@@ -41,7 +40,7 @@ void add_input(CLI::App& command, InputOptions& o)
 {
     command.add_option("INPUT", o.input,
                        wrapped(fmt::format("a shape ({}), a mesh (.obj, .off, .ply, .stl) or a skinned character (.glb, .gltf)", fmt::join(shape_names(), ", "))))
-        ->capture_default_str();
+        ->option_text("[brain]");
     auto option = [&](const char* name, auto& value, const std::string& description) { return command.add_option(name, value, wrapped(description)); };
     option("--nodes", o.nodes, "simulation nodes sampled in the volume [the paper's number for a shape, 100 for a mesh]")
         ->check(CLI::Range(1, 100000))->option_text("N");
@@ -52,26 +51,44 @@ void add_input(CLI::App& command, InputOptions& o)
     option("--clip", o.clip, "which clip of a character or of --transforms [the first]")->option_text("NAME");
     option("--fps", o.fps, "frames per second sampled from a character's clip [30]")->check(CLI::Range(1e-3, 1e6))->option_text("X");
     option("--frames", o.frames, "how many frames, evenly spread, the last one included [4 if scripted, else all]")
-        ->check(CLI::Range(1, 1000000))->option_text("N");
+        ->check(CLI::Range(1, 100000))->option_text("N");
     option("--seed", o.seed, "seed of everything random [0]")->option_text("N");
 }
 
-template <class Enum> CLI::CheckedTransformer one_of(std::map<std::string, Enum> names) { return CLI::CheckedTransformer(std::move(names)); }
+// Accepts one of the names and nothing else, and says which there are.
+template <class Enum> CLI::Validator one_of(std::vector<std::pair<std::string, Enum>> names)
+{
+    return CLI::Validator(
+        [names = std::move(names)](std::string& text) {
+            std::string known;
+            for (std::size_t i = 0; i < names.size(); ++i) {
+                if (names[i].first == text) {
+                    text = std::to_string(static_cast<int>(names[i].second));
+                    return std::string();
+                }
+                known += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + names[i].first;
+            }
+            return "expected " + known + ", found '" + text + "'";
+        },
+        "");
+}
 
 #ifdef CINCH_EXACT
 void add_verify(CLI::App& app, VerifyOptions& o)
 {
     CLI::App& command = *app.add_subcommand("verify", "prove every bound of every BV, direction and frame in exact arithmetic");
     add_input(command, o.input);
-    std::map<std::string, Method> methods;
+    std::vector<std::pair<std::string, Method>> methods;
     for (std::size_t i = 0; i < method_names.size(); ++i)
-        methods.emplace(method_names[i], static_cast<Method>(i));
+        methods.emplace_back(method_names[i], static_cast<Method>(i));
     auto option = [&](const char* name, auto& value, const std::string& description) { return command.add_option(name, value, wrapped(description)); };
     option("--method", o.method, "convex, eq12, limited or vertices [limited]")->transform(one_of(methods))->option_text("NAME");
     option("--kdop", o.kdop, "directions of the bounds: 6, 14, 18 or 26 [6]")->check(CLI::IsMember({6, 14, 18, 26}))->option_text("K");
     option("--leaf", o.leaf, "most triangles per leaf [1]")->check(CLI::Range(1, 1000000))->option_text("N");
     option("--threads", o.threads, "threads [all cores]")->check(CLI::Range(1, 1024))->option_text("N");
     command.add_flag("--json", o.json, "JSON Lines on standard output and nothing else");
+    option("--certificate", o.certificate, "write a proof of every bound, for experiments/check_certificate.py; compressed if it ends in .gz")
+        ->option_text("FILE");
     option("--sabotage", o.sabotage,
            "for tests: damage the bounds, to see that it is found: no-rounding (drop the error terms), swap-interval (swap one l and h), "
            "lower-h (lower one h by 2^-53)")
@@ -82,6 +99,7 @@ void add_verify(CLI::App& app, VerifyOptions& o)
                    "  cinch verify hand.ply --nodes 200          a mesh of yours, standard motion\n"
                    "  cinch verify robot.glb --clip Robot_Dance  a skinned character\n"
                    "  cinch verify rest.off --weights w.txt --transforms t.txt --json\n"
+                   "  cinch verify fish --certificate fish.jsonl.gz\n"
                    "\n"
                    "Text form of weights and transforms ('#' starts a comment):\n"
                    "  weights     'V J'; then per vertex 'n j1 w1 ... jn wn': nodes from 0, weights\n"
@@ -122,11 +140,11 @@ void add_fuzz(CLI::App& app, FuzzOptions& o)
     option("--seconds", o.seconds, "stop after so many seconds")->check(CLI::Range(0.0, 1e9))->option_text("X");
     option("--cases", o.cases, "stop after so many cases [100,000 if no --seconds]")->option_text("N");
     option("--seed", o.seed, "case i of a seed is always the same [0]")->option_text("N");
-    std::set<std::string> families;
-    for (const std::string_view name : fuzz_families())
-        families.emplace(name);
     option("--family", o.family, fmt::format("only this family: {} [all in turn]", fmt::join(fuzz_families(), ", ")))
-        ->check(CLI::IsMember(families))->option_text("NAME");
+        ->check(CLI::Validator([](std::string& text) {
+            const auto known = fuzz_families();
+            return std::find(known.begin(), known.end(), text) != known.end() ? "" : "there is no family '" + text + "'";
+        }, ""))->option_text("NAME");
     command.add_option_function<std::string>("--shard", [&o](const std::string& text) {
         unsigned long long i = 0, n = 0;
         int used = 0;
@@ -171,7 +189,27 @@ int main(int argc, char** argv)
     add_corners(app, corners_options);
     add_fuzz(app, fuzz_options);
 #endif
-    if (argc > 1 && argv[1][0] != '-' && app.get_subcommands([&](const CLI::App* s) { return s->get_name() == argv[1]; }).empty()) {
+    const auto run = [&](const CLI::App& parsed) -> int {
+#ifdef CINCH_EXACT
+        if (parsed.got_subcommand("verify"))
+            return verify(verify_options);
+        if (parsed.got_subcommand("corners"))
+            return corners(corners_options);
+        if (parsed.got_subcommand("fuzz")) {
+            if (fuzz_options.seconds == 0 && fuzz_options.cases == 0)
+                fuzz_options.cases = 100000;
+            if (fuzz_options.corpus.empty() && fuzz_options.defect == Defect::none)
+                fuzz_options.corpus = "data/hard";
+            return fuzz(fuzz_options);
+        }
+#endif
+        return parsed.get_subcommands().empty() ? bad_input : 0;
+    };
+    if (argc == 1) {
+        fmt::print(stderr, "cinch: no command given (see 'cinch --help')\n");
+        return bad_input;
+    }
+    if (argv[1][0] != '-' && app.get_subcommands([&](const CLI::App* s) { return s->get_name() == argv[1]; }).empty()) {
         fmt::print(stderr, "cinch: unknown command '{}' (see 'cinch --help')\n", argv[1]);
         return bad_input;
     }
@@ -184,25 +222,20 @@ int main(int argc, char** argv)
         return bad_input;
     }
     try {
-#ifdef CINCH_EXACT
-        if (app.got_subcommand("verify"))
-            return verify(verify_options);
-        if (app.got_subcommand("corners"))
-            return corners(corners_options);
-        if (app.got_subcommand("fuzz")) {
-            if (fuzz_options.seconds == 0 && fuzz_options.cases == 0)
-                fuzz_options.cases = 100000;
-            if (fuzz_options.corpus.empty() && fuzz_options.defect == Defect::none)
-                fuzz_options.corpus = "data/hard";
-            return fuzz(fuzz_options);
+        const int status = run(app);
+        if (std::fflush(stdout) != 0 || std::ferror(stdout)) {
+            fmt::print(stderr, "cinch: the results could not be written; is the disk full?\n");
+            return bad_input;
         }
-#endif
+        return status;
     } catch (const InputError& error) {
         fmt::print(stderr, "cinch: {}\n", error.what());
         return bad_input;
     } catch (const std::bad_alloc&) {
         fmt::print(stderr, "cinch: out of memory\n");
         return bad_input;
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "cinch: a check failed: {}\n", error.what());
+        return 1;
     }
-    return 0;
 }

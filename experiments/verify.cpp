@@ -3,12 +3,16 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 
+#include "exact/certificate.hpp"
 #include "experiments/report/interrupt.hpp"
+#include "experiments/report/line_file.hpp"
 #include "experiments/report/progress.hpp"
 #include "experiments/verify_report.hpp"
 #include "toolkit/deform/dyadic.hpp"
@@ -56,9 +60,9 @@ void add(const Bvh& bvh, const exact::FrameVerdict& frame, int kdop, VerifyTotal
             level.violated += violated;
             level.proven += k - violated;
             const exact::BvReport& report = frame.bvs[bv];
-            if (!(report.true_radius > 0))
-                continue;
             const double ratio = report.bound_radius / report.true_radius;
+            if (!(report.true_radius > 0 && std::isfinite(ratio)))
+                continue;
             ++level.measured;
             level.ratio_sum += ratio;
             level.ratio_max = std::max(level.ratio_max, ratio);
@@ -100,6 +104,12 @@ int verify(const VerifyOptions& options)
             level.nodes += bvh.bvs[bv].interval_count;
         totals.levels.push_back(level);
     }
+    std::optional<LineFile> certificate;
+    const exact::LineSink write = [&](std::string_view text) { certificate->line(text); };
+    if (!options.certificate.empty()) {
+        certificate.emplace(options.certificate);
+        exact::certify_rest(input.surface, bvh, options.method, options.kdop, totals.frames_wanted, write);
+    }
     catch_interrupt();
     {
         Progress progress("verifying frames", totals.frames_wanted);
@@ -108,13 +118,19 @@ int verify(const VerifyOptions& options)
             if (interrupted())
                 break;
             refit(bvh, input.surface, maps, {options.method, options.kdop, rounding}, supports);
-            add(bvh, verifier.check(maps, options.method, options.kdop, supports), options.kdop, totals);
+            const exact::FrameVerdict verdict = verifier.check(maps, options.method, options.kdop, supports);
+            if (certificate)
+                exact::certify_frame(totals.frames, maps, options.method, options.kdop, supports, verdict, write);
+            add(bvh, verdict, options.kdop, totals);
+            totals.infinite += static_cast<std::size_t>(std::count_if(supports.begin(), supports.end(), [](double s) { return std::isinf(s); }));
             const LadderTotals ladder = check_ladder(bvh, input.surface, maps, options, rounding);
             totals.ladder.compared += ladder.compared;
             totals.ladder.broken += ladder.broken;
             progress.done(totals.frames);
         }
     }
+    if (certificate)
+        certificate->close();
     for (const LevelTotals& level : totals.levels) {
         totals.proven += level.proven;
         totals.violated += level.violated;

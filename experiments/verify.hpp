@@ -16,6 +16,7 @@ struct VerifyOptions {
     std::size_t leaf = 1; ///< triangles
     int threads = 0;      ///< 0: as many as the machine has
     bool json = false;
+    std::string certificate; ///< file to write; empty: none
     Sabotage sabotage = Sabotage::none;
 };
 

@@ -45,9 +45,10 @@ void print_table(const Input& input, const VerifyOptions& options, const VerifyT
     for (std::size_t i = 0; i < totals.levels.size(); ++i) {
         const LevelTotals& level = totals.levels[i];
         const LevelMeans mean = means(level);
+        auto share = [&](double x) { return level.measured ? fmt::format("{:.3f}", x) : "-"; };
         rows.push_back({std::to_string(i), grouped(level.bvs), fmt::format("{:.1f}", mean.n), grouped(level.proven), grouped(level.violated),
-                        fmt::format("{:.3f}", mean.ratio), fmt::format("{:.3f}", level.ratio_max), fmt::format("{:.3f}", mean.box),
-                        fmt::format("{:.3f}", mean.interval), fmt::format("{:.3f}", mean.corner), fmt::format("{:.0e}", mean.rounding)});
+                        share(mean.ratio), share(level.ratio_max), share(mean.box), share(mean.interval), share(mean.corner),
+                        level.measured ? fmt::format("{:.0e}", mean.rounding) : "-"});
     }
     fmt::print("{}\n", table({"level", "BVs", "n", "proven", "violated", "ratio", "max", "box", "interval", "corner", "rounding"}, rows));
     fmt::print("n: simulation nodes per BV, mean. ratio, max: bound radius / true radius.\n"
@@ -64,6 +65,8 @@ void print_table(const Input& input, const VerifyOptions& options, const VerifyT
         fmt::print("order of the ladder: limited <= eq12 <= convex broken {} times in {}\n", grouped(totals.ladder.broken), grouped(totals.ladder.compared));
     else
         fmt::print("order of the ladder: limited <= eq12 <= convex in all of {} comparisons\n", grouped(totals.ladder.compared));
+    if (totals.infinite)
+        fmt::print("{} infinite: something overflows a double\n", counted(totals.infinite, "bound is", "bounds are"));
     fmt::print("{} bounds, {} proven, {} violated\n", grouped(totals.bounds), grouped(totals.proven), grouped(totals.violated));
     fmt::print("{}, filter hit rate {:.4f}\n{}\n", duration(totals.seconds), rate(totals.decided_by_filter, totals.bounds), describe(from));
 }
@@ -79,9 +82,10 @@ void print_json(const Input& input, const VerifyOptions& options, const VerifyTo
         const LevelTotals& level = totals.levels[i];
         const LevelMeans mean = means(level);
         json record = base();
+        auto share = [&](double x) { return level.measured ? json(x) : json(); }; // null where nothing has a size
         record.update({{"level", i}, {"bvs", level.bvs}, {"mean_n", mean.n}, {"proven", level.proven}, {"violated", level.violated},
-                       {"mean_ratio", mean.ratio}, {"max_ratio", level.ratio_max}, {"box_loss", mean.box}, {"interval_loss", mean.interval},
-                       {"corner_loss", mean.corner}, {"rounding_loss", mean.rounding}});
+                       {"mean_ratio", share(mean.ratio)}, {"max_ratio", share(level.ratio_max)}, {"box_loss", share(mean.box)},
+                       {"interval_loss", share(mean.interval)}, {"corner_loss", share(mean.corner)}, {"rounding_loss", share(mean.rounding)}});
         print(record);
     }
     for (const auto& example : totals.examples) {
@@ -93,7 +97,7 @@ void print_json(const Input& input, const VerifyOptions& options, const VerifyTo
     json record = base();
     record.update({{"frames", totals.frames}, {"leaf_triangles", options.leaf}, {"vertices", input.surface.mesh.vertices.size()},
                    {"triangles", input.surface.mesh.triangles.size()}, {"nodes", input.surface.weights.node_count}, {"motion", input.clip.name},
-                   {"bounds", totals.bounds}, {"proven", totals.proven}, {"violated", totals.violated},
+                   {"bounds", totals.bounds}, {"proven", totals.proven}, {"violated", totals.violated}, {"infinite", totals.infinite},
                    {"ladder_compared", totals.ladder.compared}, {"ladder_broken", totals.ladder.broken},
                    {"filter_hit_rate", rate(totals.decided_by_filter, totals.bounds)}, {"seconds", totals.seconds},
                    {"complete", totals.frames == totals.frames_wanted}, {"load_report", input.report},

@@ -15,7 +15,7 @@ struct LevelTotals {
     std::size_t bvs = 0;          ///< in the level
     double nodes = 0;             ///< sum of n over these
     std::size_t proven = 0, violated = 0;
-    std::size_t measured = 0;     ///< BVs × frames with a true radius > 0
+    std::size_t measured = 0;     ///< BVs × frames with a true radius > 0 and finite bounds
     double ratio_sum = 0, ratio_max = 0;
     exact::Loss loss;             ///< sum over the measured, in units of their true radius
 };
@@ -28,6 +28,7 @@ struct LadderTotals {
 struct VerifyTotals {
     std::size_t frames = 0, frames_wanted = 0;
     std::size_t bounds = 0, proven = 0, violated = 0, decided_by_filter = 0;
+    std::size_t infinite = 0; ///< of the proven ones
     double seconds = 0;
     std::vector<LevelTotals> levels;
     LadderTotals ladder;

@@ -7,6 +7,7 @@
 #include <catch2/catch.hpp>
 
 #include "toolkit/bounds/rounding.hpp"
+#include "toolkit/deform/arithmetic.hpp"
 
 #if defined(__SSE2__)
 #include <xmmintrin.h>

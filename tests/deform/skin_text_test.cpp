@@ -27,7 +27,7 @@ TEST_CASE("clips as text load")
 TEST_CASE("bad weights and clips are refused with the line")
 {
     auto weights = [](const char* text) { parse_weights_text(text, "w.txt", 2); };
-    CHECK_THROWS_WITH(weights("3 2\n"), Catch::Contains("w.txt:1: declares 3 vertices, but the other file has 2"));
+    CHECK_THROWS_WITH(weights("3 2\n"), Catch::Contains("w.txt:1: declares 3 vertices, but the mesh has 2"));
     CHECK_THROWS_WITH(weights("2 2\n1 0 1\n1 2 1\n"), Catch::Contains("w.txt:3: node index 2 of vertex 1 is out of range"));
     CHECK_THROWS_WITH(weights("2 2\n1 0 1\n1 1 -1\n"), Catch::Contains("w.txt:3: vertex 1 has a negative weight"));
     CHECK_THROWS_WITH(weights("2 2\n2 1 1 1 1\n1 1 1\n"), Catch::Contains("w.txt:2: vertex 0 names node 1 twice"));
@@ -36,7 +36,7 @@ TEST_CASE("bad weights and clips are refused with the line")
     CHECK_THROWS_WITH(weights("2 2\n1 0 1\n1 0 1\n1 0 1\n"), Catch::Contains("w.txt:4: more lines"));
     CHECK_THROWS_WITH(weights("2 2\n0\n1 0 1\n"), Catch::Contains("w.txt:2: the number of influences is 0"));
     auto clips = [](const char* text) { parse_clips_text(text, "t.txt", 1); };
-    CHECK_THROWS_WITH(clips("1\nwalk 1 2\n"), Catch::Contains("t.txt:2: declares 2 nodes, but the other file has 1"));
+    CHECK_THROWS_WITH(clips("1\nwalk 1 2\n"), Catch::Contains("t.txt:2: declares 2 nodes, but the weights have 1"));
     CHECK_THROWS_WITH(clips("1\nwalk 1 1\n0 1 0 0 0 0 1 0 0 0 0 1\n"), Catch::Contains("the file ends"));
     CHECK_THROWS_WITH(clips("1\nwalk 1 1\n0 1 0 0 0 0 1 0 0 0 0 1 inf\n"), Catch::Contains("t.txt:3: a matrix entry 'inf' is not finite"));
     CHECK_THROWS_WITH(clips("1\nwalk 2000000000 1\n"), Catch::Contains("the file ends"));

@@ -5,12 +5,19 @@
 #include <limits>
 
 #include <catch2/catch.hpp>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include "exact/verifier.hpp"
 #include "tests/support.hpp"
 #include "toolkit/deform/dyadic.hpp"
+#include "toolkit/deform/evaluate.hpp"
 #include "toolkit/hierarchy/refit.hpp"
+
+#if defined(__SSE2__)
+#include <xmmintrin.h>
+#endif
 
 using namespace cinch;
 using namespace cinch::exact;
@@ -207,14 +214,93 @@ TEST_CASE("broken trees, weights and transforms are refused")
     refused([](Scene& s) { s.bvh.bvs.back().first_interval += 1; });
     refused([](Scene& s) { s.e.surface.weights.weight[0] += 0x1p-53; });
     refused([](Scene& s) { s.e.surface.weights.weight[0] += 0x1p-54; });
+    refused([](Scene& s) { s.e.surface.weights.row.back() += 1; });
+    refused([](Scene& s) { std::swap(s.e.surface.weights.row[3], s.e.surface.weights.row[4]); });
+    refused([](Scene& s) { s.e.surface.mesh.triangles[7][1] = 400; });
+    refused([](Scene& s) { s.e.surface.mesh.vertices[7].y() = std::numeric_limits<double>::quiet_NaN(); });
+    refused([](Scene& s) { s.e.surface.mesh.vertices[7].y() = std::numeric_limits<double>::infinity(); });
     Scene scene;
     const auto s = scene.supports(Method::limited, 6);
     scene.e.frames[2][0].m[0][0] = std::numeric_limits<double>::infinity();
     CHECK_THROWS_AS(scene.verdict(Method::limited, 6, s), std::invalid_argument);
 }
 
+TEST_CASE("damaged rest data are faults, whatever they hold")
+{
+    const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+    auto faulty = [](auto&& damage) {
+        Scene scene;
+        const auto s = scene.supports(Method::limited, 6);
+        damage(scene.bvh);
+        for (Method method : {Method::limited, Method::vertices})
+            CHECK((scene.verdict(method, 6, s).failed[0] & rest_data));
+    };
+    faulty([](Bvh& bvh) { bvh.node[0] = 0xfffffff0u; });
+    faulty([](Bvh& bvh) { bvh.bvs[0].interval_count = 0; });
+    faulty([&](Bvh& bvh) { bvh.bvs[0].centre.x() = nan; });
+    faulty([&](Bvh& bvh) { bvh.bvs[0].centre.x() = inf; });
+    faulty([&](Bvh& bvh) { bvh.bvs[0].half.x() = nan; });
+    faulty([&](Bvh& bvh) { bvh.bvs[0].half.x() = -1; });
+    faulty([&](Bvh& bvh) { bvh.h[0] = nan; });
+    Scene scene; // an infinite rest box holds everything, but then no finite bound follows from it
+    const auto s = scene.supports(Method::limited, 6);
+    scene.bvh.bvs[0].half.x() = inf;
+    CHECK(scene.verdict(Method::limited, 6, s).failed[0] == weight_space);
+    CHECK(violated(scene.verdict(Method::limited, 6, scene.supports(Method::limited, 6))) == 0);
+}
+
+TEST_CASE("what overflows is bounded by infinity and nothing less")
+{
+    Scene scene;
+    double greatest = 0;
+    for (const AffineMap& map : scene.e.frames[2])
+        for (const auto& row : map.m)
+            for (double x : row)
+                greatest = std::max(greatest, std::abs(x));
+    for (AffineMap& map : scene.e.frames[2])
+        for (auto& row : map.m)
+            for (double& x : row)
+                x = x / greatest * 1.7e308;
+    for (Method method : methods)
+        for (int k : {6, 14}) {
+            auto s = scene.supports(method, k);
+            CHECK(std::count(s.begin(), s.end(), std::numeric_limits<double>::infinity()) > 0);
+            CHECK(violated(scene.verdict(method, k, s)) == 0);
+            std::replace(s.begin(), s.end(), std::numeric_limits<double>::infinity(), std::numeric_limits<double>::max());
+            CHECK(violated(scene.verdict(method, k, s)) > 0);
+        }
+}
+
+#if defined(__SSE2__)
+TEST_CASE("a floating-point environment that TBB took over earlier does not reach the bounds or the verifier")
+{
+    const unsigned int saved = _mm_getcsr();
+    _mm_setcsr(saved | 0x8040u); // flush to zero while TBB starts: its tasks would keep that
+    tbb::parallel_for(0, 1000, [](int) {});
+    _mm_setcsr(saved);
+
+    Scene scene;
+    for (Vec3& v : scene.e.surface.mesh.vertices)
+        v *= 1e-160;
+    for (AffineMap& map : scene.e.frames[2])
+        for (auto& row : map.m)
+            for (int c = 0; c < 4; ++c)
+                row[c] *= c < 3 ? 1e-150 : 1e-310;
+    scene.bvh = build_bvh(scene.e.surface, 1);
+    std::vector<Vec3> computed(scene.e.surface.mesh.vertices.size());
+    evaluate(scene.e.surface.mesh.vertices, scene.e.surface.weights, scene.e.frames[2], computed);
+    for (std::size_t k = 0; k < computed.size(); ++k)
+        REQUIRE(computed[k] == evaluate_vertex(scene.e.surface.mesh.vertices[k], scene.e.surface.weights.of(k), scene.e.frames[2]));
+    CHECK(computed[0] != Vec3(0, 0, 0));
+    for (Method method : methods)
+        CHECK(violated(scene.verdict(method, 6, scene.supports(method, 6))) == 0);
+    CHECK(violated(scene.verdict(Method::limited, 6, std::vector<double>(scene.bvh.bvs.size() * 6, 0.0))) > 0);
+}
+#endif
+
 TEST_CASE("the verdict does not depend on the thread count")
 {
+    const tbb::global_control seven(tbb::global_control::max_allowed_parallelism, 7);
     const Scene scene;
     const auto s = scene.supports(Method::limited, 6, 2, Rounding::plain);
     std::vector<FrameVerdict> verdicts;

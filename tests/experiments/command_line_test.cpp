@@ -34,10 +34,10 @@ TEST_CASE("help and version")
 
 TEST_CASE("bad usage exits 2 with one line")
 {
-    check_refused("", "subcommand");
+    check_refused("", "no command given");
     check_refused("verfiy", "verfiy");
     check_refused("verify --kdop 8", "--kdop");
-    check_refused("verify --method quick", "--method");
+    check_refused("verify --method quick", "--method: expected convex, eq12, limited or vertices, found 'quick'");
     check_refused("verify --frames 0", "--frames");
     check_refused("verify --leaf none", "--leaf");
     check_refused("verify --unknown", "--unknown");
@@ -64,6 +64,6 @@ TEST_CASE("bad input exits 2 with one line: file, place, reason")
     folder.write("ok.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
     folder.write("w.txt", "4 1\n1 0 1\n");
     check_refused("verify " + at + "ok.off --weights " + at + "w.txt", "go together");
-    check_refused("verify " + at + "ok.off --weights " + at + "w.txt --transforms " + at + "t.txt", "declares 4 vertices, but the other file has 3");
+    check_refused("verify " + at + "ok.off --weights " + at + "w.txt --transforms " + at + "t.txt", "declares 4 vertices, but the mesh has 3");
     check_refused("verify " + at + "ok.off --nodes 5 --weights " + at + "w.txt --transforms " + at + "t.txt", "--nodes needs");
 }

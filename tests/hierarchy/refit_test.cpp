@@ -3,6 +3,7 @@
 #include <limits>
 
 #include <catch2/catch.hpp>
+#include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
 #include "tests/support.hpp"
@@ -54,6 +55,7 @@ TEST_CASE("in doubles vertices ≤ limited ≤ eq12 ≤ convex, and every comput
 
 TEST_CASE("the same bits for 1, 2 and 7 threads")
 {
+    const tbb::global_control seven(tbb::global_control::max_allowed_parallelism, 7);
     const test::Example e = test::example(2000, 60);
     const Bvh bvh = build_bvh(e.surface, 1);
     for (Method method : methods) {

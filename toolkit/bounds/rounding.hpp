@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// The error terms that make double results proven upper bounds in the default rounding mode. Notation:
+// The error terms that make double results proven upper bounds in the default rounding mode (deform/arithmetic.hpp). Notation:
 //   u = 2^-53, η = 2^-1074, γ_k = ku/(1 − ku), fl(·) round to nearest even.
 // Facts used: fl(x∘y) = (x∘y)(1 + δ) + ε with |δ| ≤ u, and ε = 0 for + and −, |ε| ≤ η/2 for ×; a sum of leaves that each
 // pass at most k roundings is within γ_k Σ|leaf| of the exact sum, in any order of summation [Higham, ch. 3].
@@ -50,9 +50,5 @@ inline double sum_error(double nodes, double absolute_sum) noexcept
 {
     return succ((nodes + 4) * unit_roundoff * absolute_sum + nodes * smallest_subnormal);
 }
-
-/// Throws std::runtime_error unless arithmetic rounds to nearest and keeps subnormals: everything above rests on it.
-/// Linking anything with -ffast-math, or a plug-in host that sets flush-to-zero, breaks it for the whole thread.
-void require_default_arithmetic();
 
 } // namespace cinch

@@ -65,6 +65,8 @@ double best_lambda(WeightSpace space, std::span<const double> b, std::vector<std
             equal_range += e->second;
         if (greater_range + equal_range >= slack)
             return pivot;
+        if (less == first)
+            break; // the pivot is not a number
         slack -= greater_range + equal_range;
         first = less;
     }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "toolkit/deform/evaluate.hpp"
 
-#include <tbb/parallel_for.h>
+#include "toolkit/deform/arithmetic.hpp"
+#include "toolkit/deform/parallel.hpp"
 
 namespace cinch {
 
@@ -20,8 +21,9 @@ Vec3 evaluate_vertex(const Vec3& rest, Weights::Row row, std::span<const AffineM
 
 void evaluate(std::span<const Vec3> rest, const Weights& weights, std::span<const AffineMap> maps, std::span<Vec3> out)
 {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rest.size(), 1024), [&](const auto& range) {
-        for (std::size_t k = range.begin(); k < range.end(); ++k)
+    require_default_arithmetic();
+    parallel_blocks(rest.size(), 1024, [&](std::size_t first, std::size_t last) {
+        for (std::size_t k = first; k < last; ++k)
             out[k] = evaluate_vertex(rest[k], weights.of(k), maps);
     });
 }

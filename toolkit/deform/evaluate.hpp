@@ -13,7 +13,8 @@ namespace cinch {
 /// caller gets the same bits, and the bounds are proven to contain it. Non-finite maps give non-finite coordinates.
 Vec3 evaluate_vertex(const Vec3& rest, Weights::Row row, std::span<const AffineMap> maps) noexcept;
 
-/// All vertices, in parallel; the same bits for every thread count. `out` has one place per vertex.
+/// All vertices, in parallel; the same bits for every thread count. `out` has one place per vertex. Throws std::runtime_error
+/// for a changed floating-point environment (arithmetic.hpp).
 void evaluate(std::span<const Vec3> rest, const Weights& weights, std::span<const AffineMap> maps, std::span<Vec3> out);
 
 } // namespace cinch

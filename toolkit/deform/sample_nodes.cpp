@@ -6,9 +6,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include <tbb/parallel_for.h>
-
 #include "toolkit/deform/dyadic.hpp"
+#include "toolkit/deform/parallel.hpp"
 
 namespace cinch {
 namespace {
@@ -116,8 +115,8 @@ Weights kernel_weights(const TriangleMesh& mesh, const SimulationNodes& nodes, d
         bool alone = false;
     };
     std::vector<VertexRow> rows(mesh.vertices.size());
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rows.size(), 256), [&](const auto& range) {
-        for (std::size_t k = range.begin(); k < range.end(); ++k) {
+    parallel_blocks(rows.size(), 256, [&](std::size_t first, std::size_t last) {
+        for (std::size_t k = first; k < last; ++k) {
             VertexRow& row = rows[k];
             std::uint32_t nearest = 0;
             double nearest_squared = std::numeric_limits<double>::infinity();
@@ -133,8 +132,8 @@ Weights kernel_weights(const TriangleMesh& mesh, const SimulationNodes& nodes, d
                     row.weight.push_back(s * s * s);
                 }
             }
-            row.alone = row.node.empty();
-            if (row.alone) {
+            if (row.node.empty()) {
+                row.alone = nearest_squared > 0; // on a node, with no reach at all, is as it should be
                 row.node = {nearest};
                 row.weight = {1};
             }

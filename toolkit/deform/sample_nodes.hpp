@@ -21,7 +21,7 @@ struct SimulationNodes {
 SimulationNodes sample_nodes(const TriangleMesh& mesh, std::size_t count, std::uint64_t seed);
 
 /// Kernel (1 − r²/h²)³ for r < h, normalised per vertex, h = support × fill distance. A vertex beyond every node's reach
-/// follows its nearest node alone; `alone`, if given, counts these. h = 0 (one point) gives every vertex its nearest node.
+/// follows its nearest node alone; `alone`, if given, counts these (not those that coincide with it, as all do where h = 0).
 Weights kernel_weights(const TriangleMesh& mesh, const SimulationNodes& nodes, double support, std::size_t* alone = nullptr);
 
 } // namespace cinch

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <stdexcept>
 
 #include "toolkit/deform/dyadic.hpp"
 
@@ -17,6 +18,8 @@ Weights to_dyadic(const Influences& influences, WeightReport* report)
     std::vector<double> weights;
     for (std::size_t k = 0; k + 1 < influences.row.size(); ++k) {
         const std::size_t first = influences.row[k], last = influences.row[k + 1];
+        if (first >= last)
+            throw std::invalid_argument("to_dyadic: vertex " + std::to_string(k) + " has no influence");
         weights.assign(influences.weight.begin() + static_cast<std::ptrdiff_t>(first), influences.weight.begin() + static_cast<std::ptrdiff_t>(last));
         const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
         counted.least_sum = k == 0 ? sum : std::min(counted.least_sum, sum);

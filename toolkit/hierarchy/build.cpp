@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <limits>
 #include <numeric>
 #include <stdexcept>
 
@@ -159,6 +160,8 @@ Bvh build_bvh(const DeformableSurface& surface, std::size_t leaf_triangles)
         Bv& bv = bvh.bvs[i];
         set_rest_box(bv, data[i]);
         bv.vertex_influences = data[i].vertex_influences;
+        if (bvh.node.size() + data[i].intervals.size() > std::numeric_limits<std::uint32_t>::max())
+            throw std::length_error("build_bvh: over 2^32 weight intervals; use larger leaves");
         bv.first_interval = static_cast<std::uint32_t>(bvh.node.size());
         bv.interval_count = static_cast<std::uint32_t>(data[i].intervals.size());
         for (const Interval& interval : data[i].intervals) {

@@ -5,15 +5,14 @@
 #include <stdexcept>
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 
 #include "toolkit/bounds/bound_vertex.hpp"
 #include "toolkit/bounds/rounding.hpp"
+#include "toolkit/deform/arithmetic.hpp"
+#include "toolkit/deform/parallel.hpp"
 
 namespace cinch {
 namespace {
-
-using Range = tbb::blocked_range<std::size_t>;
 
 void refit_from_vertices(const Bvh& bvh, const DeformableSurface& surface, std::span<const AffineMap> maps,
                          const RefitOptions& options, std::span<double> supports)
@@ -21,8 +20,8 @@ void refit_from_vertices(const Bvh& bvh, const DeformableSurface& surface, std::
     const auto k = static_cast<std::size_t>(options.kdop);
     const auto& mesh = surface.mesh;
     std::vector<double> vertex(mesh.vertices.size() * k);
-    tbb::parallel_for(Range(0, mesh.vertices.size(), 512), [&](const Range& range) {
-        for (std::size_t v = range.begin(); v < range.end(); ++v)
+    parallel_blocks(mesh.vertices.size(), 512, [&](std::size_t first, std::size_t last) {
+        for (std::size_t v = first; v < last; ++v)
             bound_vertex(mesh.vertices[v], surface.weights.of(v), maps, options.rounding, axes_of(options.kdop),
                          std::span(vertex).subspan(v * k, k));
     });
@@ -62,8 +61,8 @@ void refit(const Bvh& bvh, const DeformableSurface& surface, std::span<const Aff
     if (options.method == Method::vertices)
         return refit_from_vertices(bvh, surface, maps, options, supports);
     tbb::enumerable_thread_specific<BoundScratch> scratch;
-    tbb::parallel_for(Range(0, bvh.bvs.size(), 64), [&](const Range& range) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i)
+    parallel_blocks(bvh.bvs.size(), 64, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i)
             bound_box(bvh.rest(i), maps, options.method, options.rounding, axes_of(options.kdop), scratch.local(), supports.subspan(i * k, k));
     });
 }

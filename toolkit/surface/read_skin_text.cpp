@@ -17,10 +17,10 @@ std::size_t count_between(TextScan& scan, const char* what, std::int64_t least)
     return static_cast<std::size_t>(n);
 }
 
-void expect_count(TextScan& scan, std::size_t found, std::size_t wanted, const std::string& what)
+void expect_count(TextScan& scan, std::size_t found, std::size_t wanted, const std::string& what, const std::string& other)
 {
     if (found != wanted)
-        scan.fail("declares " + std::to_string(found) + " " + what + ", but the other file has " + std::to_string(wanted));
+        scan.fail("declares " + std::to_string(found) + " " + what + ", but the " + other + " " + std::to_string(wanted));
 }
 
 } // namespace
@@ -28,7 +28,7 @@ void expect_count(TextScan& scan, std::size_t found, std::size_t wanted, const s
 Influences parse_weights_text(std::string_view bytes, const std::string& file, std::size_t vertices)
 {
     TextScan scan(bytes, file, '#');
-    expect_count(scan, count_between(scan, "the number of vertices", 0), vertices, "vertices");
+    expect_count(scan, count_between(scan, "the number of vertices", 0), vertices, "vertices", "mesh has");
     Influences out;
     out.node_count = static_cast<std::uint32_t>(count_between(scan, "the number of nodes", 1));
     std::vector<std::pair<std::uint32_t, double>> entries;
@@ -68,7 +68,7 @@ std::vector<Clip> parse_clips_text(std::string_view bytes, const std::string& fi
         Clip clip;
         clip.name = scan.word_across_lines("the name of a clip");
         const std::size_t frames = count_between(scan, "the number of frames", 1);
-        expect_count(scan, count_between(scan, "the number of nodes", 1), nodes, "nodes");
+        expect_count(scan, count_between(scan, "the number of nodes", 1), nodes, "nodes", "weights have");
         for (std::size_t f = 0; f < frames; ++f) {
             clip.time_s.push_back(scan.number(scan.word_across_lines("a time"), "a time"));
             std::vector<AffineMap> frame;

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Internal to exact/.
+#pragma once
+
+#include <vector>
+
+#include "exact/formulas.hpp"
+#include "exact/verifier.hpp"
+
+namespace cinch::exact {
+
+/// All that one frame shares between BVs.
+struct Frame {
+    const DeformableSurface& surface;
+    const Bvh& bvh;
+    std::span<const AffineMap> maps;
+    Method method;
+    std::span<const Axis> axes;
+    std::vector<Point<Interval>> exact_vertices; // enclosures
+    std::vector<Vec3> computed_vertices;
+};
+
+/// What the BVs of one task add to a verdict.
+struct BlockResult {
+    std::size_t decided_by_filter = 0;
+    std::vector<Violation> violations;
+    std::map<std::size_t, std::string> exact_lambda;
+};
+
+/// Proves the bounds of single BVs of a frame; one per task, for its scratch memory. Lives under DirectedRounding.
+class BvCheck {
+public:
+    explicit BvCheck(const Frame& frame) : frame_(frame), place_(frame.surface.weights.node_count) {}
+
+    /// Writes the BV's own places of `out`, where rest_data is set already if it applies.
+    void check(std::size_t bv, std::span<const std::uint32_t> vertices, std::span<const double> supports, FrameVerdict& out, BlockResult& block);
+
+private:
+    const Axis& axis() const { return frame_.axes[axis_]; }
+    const std::vector<Interval>& extrema() const { return against_ ? minus_ : plus_; }
+    void fail(Statement statement, std::string detail);
+    void enclose_extrema();
+    Interval true_support() const;
+    void check_direction(const Interval& support, bool has_weight_space, Loss& loss);
+    void check_exact_vertices(const Interval& support);
+    void check_computed_vertices();
+    void check_weight_space();
+    double greedy_lambda();
+    Interval method_value() const;
+    Interval boxes_at_actual_weights() const;
+    void attribute(const Interval& support, bool has_weight_space, Loss& loss) const;
+
+    const Frame& frame_;
+    std::vector<std::size_t> place_; // of a simulation node in rest_.node; valid for nodes of the BV
+    FrameVerdict* out_ = nullptr;
+    BlockResult* block_ = nullptr;
+    std::size_t bv_ = 0, axis_ = 0, slot_ = 0; // slot_: of the direction in the verdict's arrays
+    bool against_ = false, exact_used_ = false;
+    double bound_ = 0;
+    RestBv rest_;
+    std::span<const std::uint32_t> vertices_;
+    std::vector<Interval> plus_, minus_; // exact extrema along the axis and against it
+    Interval optimum_;
+    std::vector<std::size_t> order_;
+};
+
+} // namespace cinch::exact

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace cinch {
+
+/// A text file written line by line, compressed if its name ends in ".gz". Errors throw InputError.
+class LineFile {
+public:
+    explicit LineFile(const std::string& name);
+    ~LineFile();
+    void line(std::string_view text);
+    void close(); ///< reports what buffered writing may still hide
+
+private:
+    struct Handle;
+    std::string name_;
+    std::unique_ptr<Handle> handle_;
+};
+
+} // namespace cinch
