@@ -117,9 +117,13 @@ void BvCheck::check_exact_vertices(const Interval& support)
 void BvCheck::check_computed_vertices()
 {
     for (std::uint32_t k : vertices_) {
-        const Vec3& v = frame_.computed_vertices[k];
-        if (!(std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]))) // only an infinite bound would do
-            return fail(computed_vertices, "computed vertex " + std::to_string(k) + " is not finite");
+        Vec3 v = frame_.computed_vertices[k];
+        for (int r = 0; r < 3; ++r) {
+            if (axis()[static_cast<std::size_t>(r)] == 0)
+                v[r] = 0; // of no concern here, whatever it is
+            else if (!std::isfinite(v[r])) // only an infinite bound would do
+                return fail(computed_vertices, "computed vertex " + std::to_string(k) + " is not finite");
+        }
         if (along(as_point<Interval>(v), axis(), against_).sup() <= bound_)
             continue;
         exact_used_ = true;

@@ -17,7 +17,7 @@ enum Statement : std::uint8_t {
     rest_data = 1,         ///< the BV's rest box and weight intervals hold all its vertices
     weight_space = 2,      ///< bound ≥ exact maximum over W' of the exact extrema of the deformed rest box (not for `vertices`)
     exact_vertices = 4,    ///< bound ≥ every vertex deformed in real arithmetic
-    computed_vertices = 8, ///< bound ≥ every vertex as evaluate_vertex computes it; only +∞ contains one that is not finite
+    computed_vertices = 8, ///< bound ≥ every vertex as evaluate_vertex computes it; only +∞ contains a coordinate that is not finite
 };
 std::string name_of(Statement statement);
 
