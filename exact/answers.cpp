@@ -18,8 +18,8 @@ std::optional<Answer> answer(WeightSpace space, std::span<const double> b, doubl
     Answer out;
     out.maximum = as_fraction(best->value);
     out.lambda = as_fraction(best->lambda);
-    for (const Exact& w : best->corner)
-        out.corner.push_back(as_fraction(w));
+    for (const mpz_class& w : best->corner)
+        out.corner.push_back(as_fraction(w.get_mpz_t(), -best->corner_bits));
     if (exact.size() > 1) {
         std::vector<Exact> sorted = exact;
         std::nth_element(sorted.begin(), sorted.begin() + 1, sorted.end(), [](const Exact& x, const Exact& y) { return y < x; });

@@ -7,9 +7,9 @@
 #include <span>
 #include <string>
 
-#include <CGAL/Gmpq.h>
 #include <CGAL/Gmpzf.h>
 #include <CGAL/Interval_nt.h>
+#include <gmpxx.h>
 
 namespace cinch::exact {
 
@@ -33,26 +33,18 @@ inline Interval absolute(const Interval& x) { return CGAL::abs(x); }
 
 inline double middle(const Interval& x) { return x.inf() + 0.5 * (x.sup() - x.inf()); }
 
-/// "p/q" in lowest terms, q > 0.
-inline std::string as_fraction(const Exact& x)
+/// z·2^exponent as "p/q" in lowest terms, q > 0.
+inline std::string as_fraction(const mpz_t z, long exponent)
 {
-    mpq_t q;
-    mpq_init(q);
-    mpz_set(mpq_numref(q), x.man());
-    if (x.exp() >= 0)
-        mpz_mul_2exp(mpq_numref(q), mpq_numref(q), static_cast<mp_bitcnt_t>(x.exp()));
+    mpq_class q;
+    mpz_set(q.get_num_mpz_t(), z);
+    if (exponent >= 0)
+        mpz_mul_2exp(q.get_num_mpz_t(), q.get_num_mpz_t(), static_cast<mp_bitcnt_t>(exponent));
     else
-        mpz_mul_2exp(mpq_denref(q), mpq_denref(q), static_cast<mp_bitcnt_t>(-x.exp()));
-    mpq_canonicalize(q);
-    char* text = mpq_get_str(nullptr, 10, q);
-    std::string out = text;
-    void (*release)(void*, size_t);
-    mp_get_memory_functions(nullptr, nullptr, &release);
-    release(text, out.size() + 1);
-    if (mpz_cmp_ui(mpq_denref(q), 1) == 0)
-        out += "/1"; // GMP leaves it out
-    mpq_clear(q);
-    return out;
+        mpz_mul_2exp(q.get_den_mpz_t(), q.get_den_mpz_t(), static_cast<mp_bitcnt_t>(-exponent));
+    q.canonicalize();
+    return q.get_num().get_str() + "/" + q.get_den().get_str();
 }
+inline std::string as_fraction(const Exact& x) { return as_fraction(x.man(), x.exp()); }
 
 } // namespace cinch::exact

@@ -23,7 +23,7 @@ template <class Int> Int scaled(double x, int shift)
 {
     int exponent = 0;
     const double mantissa = std::frexp(x, &exponent); // x = mantissa·2^exponent, mantissa·2^53 an integer
-    const auto digits = static_cast<std::int64_t>(std::ldexp(mantissa, 53));
+    const auto digits = static_cast<std::int64_t>(mantissa * 0x1p53);
     const int up = exponent - 53 + shift;
     Int out;
     if constexpr (std::is_same_v<Int, mpz_class>) {
@@ -48,11 +48,8 @@ inline int common_shift(WeightSpace space)
             if (x == 0)
                 continue;
             int exponent = 0;
-            auto digits = static_cast<std::int64_t>(std::ldexp(std::frexp(x, &exponent), 53));
-            int trailing = 0;
-            for (; digits % 2 == 0; digits /= 2)
-                ++trailing;
-            shift = std::max(shift, 53 - trailing - exponent);
+            const auto digits = static_cast<std::uint64_t>(std::frexp(x, &exponent) * 0x1p53); // x > 0
+            shift = std::max(shift, 53 - std::countr_zero(digits) - exponent);
         }
     return shift;
 }
