@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <optional>
 
 #include <fmt/format.h>
@@ -17,6 +19,7 @@
 #include "experiments/verify_report.hpp"
 #include "toolkit/deform/dyadic.hpp"
 #include "toolkit/hierarchy/refit.hpp"
+#include "toolkit/surface/input_error.hpp"
 
 namespace cinch {
 namespace {
@@ -82,6 +85,33 @@ void add(const Bvh& bvh, const exact::FrameVerdict& frame, int kdop, VerifyTotal
     ++totals.frames;
 }
 
+// In the last frame verified: the exact attribution of the root's bounds, and VIPR files of the first BV of every level.
+void explain_last_frame(const Input& input, const Bvh& bvh, const VerifyOptions& options, std::span<const double> supports, VerifyTotals& totals)
+{
+    if (totals.levels.empty() || options.sabotage != Sabotage::none)
+        return; // damaged data need not have a proof
+    const auto& maps = input.clip.frames[totals.frames - 1];
+    auto place = [&](std::size_t bv, int direction) {
+        return exact::OneBound{input.surface, bvh, maps, options.method, options.kdop, bv, direction,
+                               supports[bv * static_cast<std::size_t>(options.kdop) + static_cast<std::size_t>(direction)]};
+    };
+    for (int d = 0; d < options.kdop; ++d)
+        if (const exact::OneBound root = place(0, d); std::isfinite(root.bound))
+            totals.root.push_back({d, root.bound, exact::exact_loss(root)});
+    if (options.vipr.empty())
+        return;
+    std::filesystem::create_directories(options.vipr);
+    for (std::size_t level = 0; level < totals.levels.size(); ++level)
+        for (int d = 0; d < options.kdop; ++d)
+            if (const exact::OneBound bound = place(bvh.level[level], d); std::isfinite(bound.bound)) {
+                const auto path = std::filesystem::path(options.vipr) / fmt::format("bv{}-d{}.vipr", bound.bv, d);
+                std::ofstream out(path);
+                out << exact::vipr(bound);
+                if (!out.flush())
+                    throw InputError::in_file(path.string(), "cannot be written");
+            }
+}
+
 } // namespace
 
 int verify(const VerifyOptions& options)
@@ -89,6 +119,8 @@ int verify(const VerifyOptions& options)
     const auto start = std::chrono::steady_clock::now();
     const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+    if (!options.vipr.empty() && options.method == Method::vertices)
+        throw InputError("--vipr needs a method that bounds over weights: convex, eq12 or limited");
     const Input input = load_input(options.input);
     Bvh bvh = build_bvh(input.surface, options.leaf);
     damage(bvh, options.sabotage);
@@ -110,6 +142,8 @@ int verify(const VerifyOptions& options)
         certificate.emplace(options.certificate);
         exact::certify_rest(input.surface, bvh, options.method, options.kdop, totals.frames_wanted, write);
     }
+    if (options.volume)
+        totals.volumes.resize(totals.levels.size());
     catch_interrupt();
     {
         Progress progress("verifying frames", totals.frames_wanted);
@@ -123,11 +157,15 @@ int verify(const VerifyOptions& options)
                 exact::certify_frame(totals.frames, maps, options.method, options.kdop, supports, verdict, write);
             add(bvh, verdict, options.kdop, totals);
             totals.infinite += static_cast<std::size_t>(std::count_if(supports.begin(), supports.end(), [](double s) { return std::isinf(s); }));
+            if (options.volume)
+                add_volumes(input.surface, bvh, maps, options.kdop, supports, totals.volumes);
             const LadderTotals ladder = check_ladder(bvh, input.surface, maps, options, rounding);
             totals.ladder.compared += ladder.compared;
             totals.ladder.broken += ladder.broken;
             progress.done(totals.frames);
         }
+        if (totals.frames > 0)
+            explain_last_frame(input, bvh, options, supports, totals);
     }
     if (certificate)
         certificate->close();

@@ -17,6 +17,8 @@ struct VerifyOptions {
     int threads = 0;      ///< 0: as many as the machine has
     bool json = false;
     std::string certificate; ///< file to write; empty: none
+    std::string vipr;        ///< folder for single bounds as VIPR files; empty: none
+    bool volume = false;     ///< exact volume ratios too
     Sabotage sabotage = Sabotage::none;
 };
 

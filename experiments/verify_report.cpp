@@ -55,6 +55,19 @@ void print_table(const Input& input, const VerifyOptions& options, const VerifyT
                "box, interval, corner, rounding: what the bound gives away per direction, and\n"
                "why, as a mean share of the true radius.\n\n");
 
+    if (!totals.volumes.empty()) {
+        std::vector<std::vector<std::string>> volumes;
+        for (std::size_t i = 0; i < totals.volumes.size(); ++i) {
+            const VolumeTotals& v = totals.volumes[i];
+            volumes.push_back({std::to_string(i), grouped(v.measured), grouped(v.flat),
+                               v.measured ? fmt::format("{:.3f}", v.ratio_sum / static_cast<double>(v.measured)) : "-",
+                               v.measured ? fmt::format("{:.3f}", v.ratio_max) : "-",
+                               fmt::format("{:.2f}", rate(v.redundant, v.measured + v.flat))});
+        }
+        fmt::print("{}\n", table({"level", "measured", "flat", "volume ratio", "max", "redundant planes"}, volumes));
+        fmt::print("volume ratio: exact volume of the bound / exact volume of the true {}-DOP, on a sample\n"
+                   "of each level; flat: BVs whose true {}-DOP has no volume.\n\n", options.kdop, options.kdop);
+    }
     for (const auto& example : totals.examples)
         fmt::print("violated: frame {}, level {}, BV {}, {}: {}: {}\n", example.frame, example.level, example.violation.bv,
                    direction_name(options.kdop, example.violation.direction), exact::name_of(example.violation.statement),
@@ -86,12 +99,25 @@ void print_json(const Input& input, const VerifyOptions& options, const VerifyTo
         record.update({{"level", i}, {"bvs", level.bvs}, {"mean_n", mean.n}, {"proven", level.proven}, {"violated", level.violated},
                        {"mean_ratio", share(mean.ratio)}, {"max_ratio", share(level.ratio_max)}, {"box_loss", share(mean.box)},
                        {"interval_loss", share(mean.interval)}, {"corner_loss", share(mean.corner)}, {"rounding_loss", share(mean.rounding)}});
+        if (!totals.volumes.empty()) {
+            const VolumeTotals& v = totals.volumes[i];
+            record.update({{"volume_measured", v.measured}, {"volume_flat", v.flat},
+                           {"mean_volume_ratio", v.measured ? json(v.ratio_sum / static_cast<double>(v.measured)) : json()},
+                           {"max_volume_ratio", v.measured ? json(v.ratio_max) : json()}, {"redundant_planes", v.redundant}});
+        }
         print(record);
     }
     for (const auto& example : totals.examples) {
         json record = base();
         record.update({{"frame", example.frame}, {"level", example.level}, {"bv", example.violation.bv}, {"direction", example.violation.direction},
                        {"violated_statement", exact::name_of(example.violation.statement)}, {"detail", example.violation.detail}});
+        print(record);
+    }
+    for (const auto& root : totals.root) {
+        json record = base();
+        record.update({{"attribution", "exact"}, {"frame", totals.frames - 1}, {"bv", 0}, {"direction", root.direction}, {"bound", fmt::format("{:a}", root.bound)},
+                       {"box_loss", root.loss.box}, {"interval_loss", root.loss.interval}, {"corner_loss", root.loss.corner},
+                       {"rounding_loss", root.loss.rounding}, {"total_loss", root.loss.total}});
         print(record);
     }
     json record = base();

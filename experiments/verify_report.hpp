@@ -4,9 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "exact/explain.hpp"
 #include "exact/verifier.hpp"
 #include "experiments/report/provenance.hpp"
 #include "experiments/verify.hpp"
+#include "experiments/volumes.hpp"
 
 namespace cinch {
 
@@ -32,6 +34,13 @@ struct VerifyTotals {
     double seconds = 0;
     std::vector<LevelTotals> levels;
     LadderTotals ladder;
+    std::vector<VolumeTotals> volumes; ///< per level; empty if not asked for
+    struct RootLoss {
+        int direction;
+        double bound;
+        exact::ExactLoss loss;
+    };
+    std::vector<RootLoss> root; ///< exact attribution of the root's bounds in the last frame
     struct Example {
         std::size_t frame;
         std::size_t level;

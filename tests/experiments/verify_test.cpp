@@ -150,6 +150,34 @@ TEST_CASE("overflow and points: infinite bounds are counted, ratios that do not 
     check("point.off", "w1.txt", "identity.txt", false);
 }
 
+TEST_CASE("volumes, exact attribution and VIPR files come on request")
+{
+    const test::TemporaryFolder folder;
+    const test::Run run = test::cinch("verify santa --frames 2 --leaf 64 --kdop 14 --volume --json --vipr " + (folder.path() / "v").string());
+    CHECK(run.status == 0);
+    std::size_t levels = 0, attributed = 0;
+    for (const std::string& line : run.lines()) {
+        const json record = json::parse(line);
+        if (record.contains("attribution")) {
+            ++attributed;
+            CHECK_THAT(record["box_loss"].get<std::string>(), Catch::Contains("/"));
+        } else if (record.contains("level")) {
+            ++levels;
+            CHECK(record["mean_volume_ratio"] >= 1);
+            CHECK(record["max_volume_ratio"] >= record["mean_volume_ratio"]);
+            CHECK(record["volume_measured"] > 0);
+        }
+    }
+    CHECK(attributed == 14);
+    CHECK(levels == 8);
+    std::size_t files = 0;
+    for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder.path() / "v"))
+        ++files;
+    CHECK(files == 8 * 14);
+    CHECK_THAT(test::cinch("verify santa --frames 1 --leaf 64 --volume").out, Catch::Contains("volume ratio"));
+    CHECK(test::cinch("verify santa --method vertices --vipr x").status == 2);
+}
+
 TEST_CASE("results that cannot be written are no success")
 {
     if (!std::filesystem::exists("/dev/full"))
