@@ -25,6 +25,7 @@ void BvCheck::check(std::size_t bv, std::span<const std::uint32_t> vertices, std
     bv_ = bv;
     rest_ = frame_.bvh.rest(bv);
     vertices_ = vertices;
+    box_is_finite_ = std::isfinite(rest_.half[0]) && std::isfinite(rest_.half[1]) && std::isfinite(rest_.half[2]);
     for (std::size_t j = 0; j < rest_.node.size(); ++j)
         if (rest_.node[j] < place_.size()) // else rest_data is set
             place_[rest_.node[j]] = j;
@@ -33,7 +34,7 @@ void BvCheck::check(std::size_t bv, std::span<const std::uint32_t> vertices, std
     BvReport& report = out.bvs[bv];
     double true_half[3] = {0, 0, 0}, bound_half[3] = {0, 0, 0};
     for (axis_ = 0; axis_ < frame_.axes.size(); ++axis_) {
-        if (has_weight_space)
+        if (has_weight_space && box_is_finite_)
             enclose_extrema();
         double true_width = 0, bound_width = 0;
         for (const bool against : {false, true}) {
@@ -72,7 +73,8 @@ void BvCheck::check_direction(const Interval& support, bool has_weight_space, Lo
     if (has_weight_space)
         check_weight_space();
     block_->decided_by_filter += !exact_used_;
-    attribute(support, has_weight_space, loss);
+    if (box_is_finite_ || !has_weight_space)
+        attribute(support, has_weight_space, loss);
 }
 
 void BvCheck::fail(Statement statement, std::string detail)
@@ -135,7 +137,7 @@ void BvCheck::check_computed_vertices()
 
 void BvCheck::check_weight_space()
 {
-    if (!(std::isfinite(rest_.half[0]) && std::isfinite(rest_.half[1]) && std::isfinite(rest_.half[2])))
+    if (!box_is_finite_)
         return fail(weight_space, "the rest box is infinite, the bound is not");
     // Any λ gives a certificate; a greedy fill of the enclosures' middles finds one without a gap, or nearly.
     const double lambda = greedy_lambda();

@@ -55,7 +55,7 @@ private:
     FrameVerdict* out_ = nullptr;
     BlockResult* block_ = nullptr;
     std::size_t bv_ = 0, axis_ = 0, slot_ = 0; // slot_: of the direction in the verdict's arrays
-    bool against_ = false, exact_used_ = false;
+    bool against_ = false, exact_used_ = false, box_is_finite_ = true;
     double bound_ = 0;
     RestBv rest_;
     std::span<const std::uint32_t> vertices_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exact/explain.hpp"
 
+#include <cmath>
 #include <stdexcept>
 
 #include "exact/formulas.hpp"
@@ -19,6 +20,9 @@ struct Extrema {
 
 Extrema extrema_of(const OneBound& place)
 {
+    const Vec3& half = place.bvh.bvs[place.bv].half;
+    if (!(std::isfinite(half[0]) && std::isfinite(half[1]) && std::isfinite(half[2])))
+        throw std::invalid_argument("no finite bound follows from an infinite rest box");
     Extrema out{place.bvh.rest(place.bv), axes_of(place.kdop)[static_cast<std::size_t>(place.direction / 2)], place.direction % 2 == 1, {}};
     for (std::uint32_t node : out.rest.node) {
         const auto both = extremum<Exact>(out.rest.centre, out.rest.half, place.maps[node], out.axis);
@@ -36,31 +40,57 @@ Exact method_value(Method method, const Extrema& e, const Exact& best)
     return method == Method::convex || sorted.size() == 1 ? sorted[0] : dual_value(e.rest.space, e.b, sorted[1]);
 }
 
+// The vertices that may be the farthest along the direction: all others lie behind one of them, by interval arithmetic.
+std::vector<std::uint32_t> farthest(const OneBound& place, const std::vector<std::uint32_t>& vertices, const Axis& axis, bool against)
+{
+    const DirectedRounding upward;
+    std::vector<Interval> support;
+    for (std::uint32_t k : vertices)
+        support.push_back(along(deformed<Interval>(place.surface.mesh.vertices[k], place.surface.weights.of(k), place.maps), axis, against));
+    double reached = support[0].inf();
+    for (const Interval& s : support)
+        reached = std::max(reached, s.inf());
+    std::vector<std::uint32_t> out;
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+        if (!(support[i].sup() < reached)) // NaN stays in
+            out.push_back(vertices[i]);
+    return out;
+}
+
 } // namespace
 
 ExactLoss exact_loss(const OneBound& place)
 {
+    const Exact bound(place.bound), zero(0);
+    const auto vertices = vertices_of(place.surface, place.bvh, place.bv);
+    const Axis& axis = axes_of(place.kdop)[static_cast<std::size_t>(place.direction / 2)];
+    const bool against = place.direction % 2 == 1;
+    const std::vector<std::uint32_t> ahead = farthest(place, vertices, axis, against);
+    auto support_of = [&](std::uint32_t k) {
+        return along(deformed<Exact>(place.surface.mesh.vertices[k], place.surface.weights.of(k), place.maps), axis, against);
+    };
+    Exact truth = support_of(ahead[0]);
+    for (std::uint32_t k : ahead)
+        truth = maximum(truth, support_of(k));
+    if (place.method == Method::vertices)
+        return {as_fraction(zero), as_fraction(zero), as_fraction(zero), as_fraction(bound - truth), as_fraction(bound - truth)};
+
     const Extrema e = extrema_of(place);
     const auto best = optimum(e.rest.space, e.b);
     if (!best)
         throw std::invalid_argument("exact_loss: the weight space is empty");
     bool first = true;
-    Exact truth(0), boxes(0);
-    for (std::uint32_t k : vertices_of(place.surface, place.bvh, place.bv)) {
+    Exact boxes(0);
+    for (std::uint32_t k : vertices) {
         const Weights::Row row = place.surface.weights.of(k);
-        const Exact support = along(deformed<Exact>(place.surface.mesh.vertices[k], row, place.maps), e.axis, e.against);
         Exact blended(0);
         for (std::size_t i = 0; i < row.node.size(); ++i) {
             const auto j = std::lower_bound(e.rest.node.begin(), e.rest.node.end(), row.node[i]) - e.rest.node.begin();
             blended = blended + Exact(row.weight[i]) * e.b[static_cast<std::size_t>(j)];
         }
-        truth = first ? support : maximum(truth, support);
         boxes = first ? blended : maximum(boxes, blended);
         first = false;
     }
-    const Exact bound(place.bound), zero(0);
-    if (place.method == Method::vertices)
-        return {as_fraction(zero), as_fraction(zero), as_fraction(zero), as_fraction(bound - truth), as_fraction(bound - truth)};
     const Exact value = method_value(place.method, e, best->value);
     return {as_fraction(boxes - truth), as_fraction(best->value - boxes), as_fraction(value - best->value), as_fraction(bound - value),
             as_fraction(bound - truth)};

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <limits>
 #include <sstream>
+#include <system_error>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -232,6 +233,9 @@ int main(int argc, char** argv)
         return status;
     } catch (const InputError& error) {
         fmt::print(stderr, "cinch: {}\n", error.what());
+        return bad_input;
+    } catch (const std::system_error& error) { // thrown by the print functions when their buffer overflows into a full disk
+        fmt::print(stderr, "cinch: the results could not be written: {}\n", error.what());
         return bad_input;
     } catch (const std::bad_alloc&) {
         fmt::print(stderr, "cinch: out of memory\n");

@@ -95,7 +95,7 @@ void explain_last_frame(const Input& input, const Bvh& bvh, const VerifyOptions&
         return exact::OneBound{input.surface, bvh, maps, options.method, options.kdop, bv, direction,
                                supports[bv * static_cast<std::size_t>(options.kdop) + static_cast<std::size_t>(direction)]};
     };
-    for (int d = 0; d < options.kdop; ++d)
+    for (int d = 0; options.json && d < options.kdop; ++d)
         if (const exact::OneBound root = place(0, d); std::isfinite(root.bound))
             totals.root.push_back({d, root.bound, exact::exact_loss(root)});
     if (options.vipr.empty())

@@ -40,7 +40,7 @@ struct VerifyTotals {
         double bound;
         exact::ExactLoss loss;
     };
-    std::vector<RootLoss> root; ///< exact attribution of the root's bounds in the last frame
+    std::vector<RootLoss> root; ///< exact attribution of the root's bounds in the last frame, for JSON
     struct Example {
         std::size_t frame;
         std::size_t level;
