@@ -21,6 +21,7 @@ using namespace cinch;
 
 constexpr int bad_input = 2;
 
+#ifdef CINCH_EXACT // so far every command needs the exact side
 // Descriptions begin in column 31 and CLI11 does not break lines; this does, for terminals 80 wide.
 std::string wrapped(const std::string& text)
 {
@@ -74,7 +75,6 @@ template <class Enum> CLI::Validator one_of(std::vector<std::pair<std::string, E
         "");
 }
 
-#ifdef CINCH_EXACT
 void add_verify(CLI::App& app, VerifyOptions& o)
 {
     CLI::App& command = *app.add_subcommand("verify", "prove every bound of every BV, direction and frame in exact arithmetic");
