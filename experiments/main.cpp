@@ -123,17 +123,17 @@ void add_corners(CLI::App& app, CornersOptions& o)
     command.add_flag("--json", o.json, "JSON Lines on standard output and nothing else");
     command.add_flag("--list", o.list, wrapped("print every corner, as fractions p/q, as they are found"));
     option("--limit", o.limit, "most corners to list per file [all]")->check(CLI::Range(1, std::numeric_limits<int>::max()))->option_text("N");
-    command.footer("A case file is {\"n\":3,\"l\":[...],\"h\":[...],\"b\":[[...],...]}: weight intervals with\n"
-                   "0 <= l <= h <= 1 and rows of extrema. Numbers are JSON numbers, or strings that are\n"
-                   "decimal or hexadecimal floating point (\"0x1.8p-1\").\n"
+    command.footer("A case file is {\"n\":3,\"l\":[...],\"h\":[...],\"b\":[[...],...]}: weight intervals\n"
+                   "with 0 <= l <= h <= 1 and rows of extrema. Numbers are JSON numbers, or\n"
+                   "strings that are decimal or hexadecimal floating point (\"0x1.8p-1\").\n"
                    "\n"
                    "Examples:\n"
-                   "  cinch corners space.json               count, exact maximum, Eq. 12, bound per row\n"
-                   "  cinch corners *.json --json            the same as JSON Lines\n"
+                   "  cinch corners space.json          count, exact maximum, Eq. 12, bound per row\n"
+                   "  cinch corners *.json --json       the same as JSON Lines\n"
                    "  cinch corners space.json --list --limit 10\n"
                    "\n"
-                   "Exit status: 0 done, 1 a toolkit bound lies below the exact maximum, 2 bad usage or\n"
-                   "input (other files are still answered), 130 interrupted.");
+                   "Exit status: 0 done, 1 a toolkit bound lies below the exact maximum, 2 bad\n"
+                   "usage or input (other files are still answered), 130 interrupted.");
 }
 
 void add_fuzz(CLI::App& app, FuzzOptions& o)
@@ -167,7 +167,7 @@ void add_fuzz(CLI::App& app, FuzzOptions& o)
         ->option_text("KIND");
     command.footer("Examples:\n"
                    "  cinch fuzz --seconds 600                 ten minutes, all families\n"
-                   "  cinch fuzz --cases 1000000 --resume s    can be stopped and continued at any time\n"
+                   "  cinch fuzz --cases 1000000 --resume s    can be stopped and continued\n"
                    "  cinch fuzz --shard 0/4 --seconds 600     one of four machines\n"
                    "\n"
                    "A failure is shrunk to the smallest case that still fails and saved as JSON.\n"

@@ -111,3 +111,17 @@ TEST_CASE("intervals are the extremes over the vertices, 0 where a vertex is not
     CHECK(fine.l[leaf.first_interval] == 0.125);
     CHECK(fine.h[leaf.first_interval + 1] == 0.875);
 }
+
+TEST_CASE("a node that influences one child wholly and the other not at all has l = 0 above them")
+{
+    // Siblings that share no vertex, as in meshes of several pieces.
+    DeformableSurface surface{{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {9, 0, 0}, {10, 0, 0}, {9, 1, 0}}, {{0, 1, 2}, {3, 4, 5}}}, {}};
+    surface.weights.node_count = 2;
+    surface.weights.row = {0, 1, 2, 3, 4, 5, 6};
+    surface.weights.node = {0, 0, 0, 1, 1, 1};
+    surface.weights.weight = {1, 1, 1, 1, 1, 1};
+    const Bvh bvh = build_bvh(surface, 1);
+    const RestBv root = bvh.rest(0);
+    CHECK(std::vector<double>(root.space.l.begin(), root.space.l.end()) == std::vector<double>{0, 0});
+    CHECK(std::vector<double>(root.space.h.begin(), root.space.h.end()) == std::vector<double>{1, 1});
+}
