@@ -25,7 +25,7 @@ void BvCheck::check(std::size_t bv, std::span<const std::uint32_t> vertices, std
     bv_ = bv;
     rest_ = frame_.bvh.rest(bv);
     vertices_ = vertices;
-    box_is_finite_ = std::isfinite(rest_.half[0]) && std::isfinite(rest_.half[1]) && std::isfinite(rest_.half[2]);
+    box_is_finite_ = std::isfinite(rest_.box.half[0]) && std::isfinite(rest_.box.half[1]) && std::isfinite(rest_.box.half[2]);
     for (std::size_t j = 0; j < rest_.node.size(); ++j)
         if (rest_.node[j] < place_.size()) // else rest_data is set
             place_[rest_.node[j]] = j;
@@ -88,7 +88,7 @@ void BvCheck::enclose_extrema()
     plus_.clear();
     minus_.clear();
     for (std::uint32_t node : rest_.node) {
-        const auto both = extremum<Interval>(rest_.centre, rest_.half, frame_.maps[node], axis());
+        const auto both = extremum<Interval>(rest_.box.centre, rest_.box.half, frame_.maps[node], axis());
         plus_.push_back(both.plus);
         minus_.push_back(both.minus);
     }
@@ -148,7 +148,7 @@ void BvCheck::check_weight_space()
     exact_used_ = true;
     std::vector<Exact> b;
     for (std::uint32_t node : rest_.node) {
-        const auto both = extremum<Exact>(rest_.centre, rest_.half, frame_.maps[node], axis());
+        const auto both = extremum<Exact>(rest_.box.centre, rest_.box.half, frame_.maps[node], axis());
         b.push_back(against_ ? both.minus : both.plus);
     }
     const auto best = optimum(rest_.space, b);

@@ -87,7 +87,7 @@ void certify_rest(const DeformableSurface& surface, const Bvh& bvh, Method metho
                                               [&](std::uint32_t t) { line.integers(surface.mesh.triangles[t]); });
         else
             line.raw(",\"children\":[").integer(bv.first_child).raw(",").integer(bv.first_child + 1).raw("]");
-        line.raw(",\"centre\":").numbers({bv.centre.data(), 3}).raw(",\"half\":").numbers({bv.half.data(), 3});
+        line.raw(",\"centre\":").numbers({bv.box.centre.data(), 3}).raw(",\"half\":").numbers({bv.box.half.data(), 3});
         line.raw(",\"nodes\":").integers(rest.node).raw(",\"l\":").numbers(rest.space.l).raw(",\"h\":").numbers(rest.space.h).raw("}").end();
     }
 }

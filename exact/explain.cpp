@@ -20,12 +20,12 @@ struct Extrema {
 
 Extrema extrema_of(const OneBound& place)
 {
-    const Vec3& half = place.bvh.bvs[place.bv].half;
+    const Vec3& half = place.bvh.bvs[place.bv].box.half;
     if (!(std::isfinite(half[0]) && std::isfinite(half[1]) && std::isfinite(half[2])))
         throw std::invalid_argument("no finite bound follows from an infinite rest box");
     Extrema out{place.bvh.rest(place.bv), axes_of(place.kdop)[static_cast<std::size_t>(place.direction / 2)], place.direction % 2 == 1, {}};
     for (std::uint32_t node : out.rest.node) {
-        const auto both = extremum<Exact>(out.rest.centre, out.rest.half, place.maps[node], out.axis);
+        const auto both = extremum<Exact>(out.rest.box.centre, out.rest.box.half, place.maps[node], out.axis);
         out.b.push_back(out.against ? both.minus : both.plus);
     }
     return out;

@@ -82,7 +82,7 @@ void require_tree(const DeformableSurface& surface, const Bvh& bvh)
             refuse(name + " has triangles out of range");
         if (i == 0 && bv.triangle_count != triangles)
             refuse("the root does not hold every triangle");
-        if (std::size_t{bv.first_interval} + bv.interval_count > bvh.node.size() || bvh.l.size() != bvh.node.size() || bvh.h.size() != bvh.node.size())
+        if (std::size_t{bv.first_influence} + bv.influence_count > bvh.node.size() || bvh.l.size() != bvh.node.size() || bvh.h.size() != bvh.node.size())
             refuse(name + " has weight intervals out of range");
         if (bv.is_leaf())
             continue;
@@ -131,7 +131,7 @@ std::string rest_data_fault(const DeformableSurface& surface, const Bvh& bvh, st
             high = std::max(high, surface.mesh.vertices[k][axis]);
         }
         for (double x : {low, high})
-            if (!contains(bv.centre[axis], bv.half[axis], x))
+            if (!contains(bv.box.centre[axis], bv.box.half[axis], x))
                 return "the rest box does not contain " + std::string(1, static_cast<char>('x' + axis)) + " = " + hex(x);
     }
     std::vector<std::uint32_t> influenced(rest.node.size(), 0); // how many vertices a node influences

@@ -92,7 +92,7 @@ void explain_last_frame(const Input& input, const Bvh& bvh, const VerifyOptions&
         return; // damaged data need not have a proof
     const auto& maps = input.clip.frames[totals.frames - 1];
     auto place = [&](std::size_t bv, int direction) {
-        return exact::OneBound{input.surface, bvh, maps, options.method, options.kdop, bv, direction,
+        return exact::OneBound{input.surface, bvh, maps, options.methods, options.kdop, bv, direction,
                                supports[bv * static_cast<std::size_t>(options.kdop) + static_cast<std::size_t>(direction)]};
     };
     for (int d = 0; options.json && d < options.kdop; ++d)
@@ -119,7 +119,7 @@ int verify(const VerifyOptions& options)
     const auto start = std::chrono::steady_clock::now();
     const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
-    if (!options.vipr.empty() && options.method == Method::vertices)
+    if (!options.vipr.empty() && options.methods == Method::vertices)
         throw InputError("--vipr needs a method that bounds over weights: convex, eq12 or limited");
     const Input input = load_input(options.input);
     Bvh bvh = build_bvh(input.surface, options.leaf);
@@ -133,14 +133,14 @@ int verify(const VerifyOptions& options)
         LevelTotals level;
         level.bvs = bvh.level[i + 1] - bvh.level[i];
         for (std::size_t bv = bvh.level[i]; bv < bvh.level[i + 1]; ++bv)
-            level.nodes += bvh.bvs[bv].interval_count;
+            level.nodes += bvh.bvs[bv].influence_count;
         totals.levels.push_back(level);
     }
     std::optional<LineFile> certificate;
     const exact::LineSink write = [&](std::string_view text) { certificate->line(text); };
     if (!options.certificate.empty()) {
         certificate.emplace(options.certificate);
-        exact::certify_rest(input.surface, bvh, options.method, options.kdop, totals.frames_wanted, write);
+        exact::certify_rest(input.surface, bvh, options.methods, options.kdop, totals.frames_wanted, write);
     }
     if (options.volume)
         totals.volumes.resize(totals.levels.size());
@@ -151,10 +151,10 @@ int verify(const VerifyOptions& options)
         for (const auto& maps : input.clip.frames) {
             if (interrupted())
                 break;
-            refit(bvh, input.surface, maps, {options.method, options.kdop, rounding}, supports);
-            const exact::FrameVerdict verdict = verifier.check(maps, options.method, options.kdop, supports);
+            refit(bvh, input.surface, maps, {options.methods, options.kdop, rounding}, supports);
+            const exact::FrameVerdict verdict = verifier.check(maps, options.methods, options.kdop, supports);
             if (certificate)
-                exact::certify_frame(totals.frames, maps, options.method, options.kdop, supports, verdict, write);
+                exact::certify_frame(totals.frames, maps, options.methods, options.kdop, supports, verdict, write);
             add(bvh, verdict, options.kdop, totals);
             totals.infinite += static_cast<std::size_t>(std::count_if(supports.begin(), supports.end(), [](double s) { return std::isinf(s); }));
             if (options.volume)

@@ -11,7 +11,7 @@ enum class Sabotage { none, no_rounding, swap_interval, lower_h };
 
 struct VerifyOptions {
     InputOptions input;
-    Method method = Method::limited;
+    Methods methods = Method::best;
     int kdop = 6;
     std::size_t leaf = 1; ///< triangles
     int threads = 0;      ///< 0: as many as the machine has

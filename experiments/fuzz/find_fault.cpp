@@ -70,10 +70,10 @@ void damage(Bvh& bvh, const DeformableSurface& surface, Defect defect)
     if (defect == Defect::lower_h)
         bvh.h[0] -= weight_unit;
     if (defect == Defect::small_box) { // build_bvh adds a step or two to the computed half; one ulp below it is too small
-        double& half = bvh.bvs[0].half[0];
+        double& half = bvh.bvs[0].box.half[0];
         double computed = 0;
         for (const Vec3& p : surface.mesh.vertices)
-            computed = std::max(computed, std::abs(p[0] - bvh.bvs[0].centre[0]));
+            computed = std::max(computed, std::abs(p[0] - bvh.bvs[0].box.centre[0]));
         half = std::nextafter(computed, -1.0);
     }
 }

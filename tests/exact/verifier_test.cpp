@@ -113,7 +113,7 @@ TEST_CASE("mutation: l and h swapped for one simulation node of one BV")
 {
     Scene scene;
     const Bv& bv = scene.bvh.bvs[3];
-    const auto j = bv.first_interval + 2;
+    const auto j = bv.first_influence + 2;
     REQUIRE(scene.bvh.l[j] < scene.bvh.h[j]);
     std::swap(scene.bvh.l[j], scene.bvh.h[j]);
     const FrameVerdict verdict = scene.verdict(Method::limited, 6, scene.supports(Method::limited, 6));
@@ -128,7 +128,7 @@ TEST_CASE("mutation: one h one unit of 2^-53 below the true maximum, or one l ab
         Scene scene;
         std::size_t found = scene.bvh.bvs.size();
         for (std::size_t i = 40; i < scene.bvh.bvs.size() && found == scene.bvh.bvs.size(); ++i) {
-            const auto j = scene.bvh.bvs[i].first_interval;
+            const auto j = scene.bvh.bvs[i].first_influence;
             if (scene.bvh.l[j] > 0 && scene.bvh.l[j] < scene.bvh.h[j]) {
                 (lower_h ? scene.bvh.h[j] : scene.bvh.l[j]) += lower_h ? -weight_unit : weight_unit;
                 found = i;
@@ -147,12 +147,12 @@ TEST_CASE("mutation: an unlisted simulation node, l > 0 beside a vertex without 
     {
         Scene scene;
         Bv& bv = scene.bvh.bvs[5];
-        --bv.interval_count;
+        --bv.influence_count;
         CHECK(violated(scene.verdict(Method::eq12, 6, scene.supports(Method::eq12, 6))) == 6);
     }
     {
         Scene scene;
-        for (std::uint32_t j = 0; j < scene.bvh.bvs[0].interval_count; ++j)
+        for (std::uint32_t j = 0; j < scene.bvh.bvs[0].influence_count; ++j)
             if (scene.bvh.l[j] == 0) {
                 scene.bvh.l[j] = 0x1p-53;
                 break;
@@ -211,7 +211,7 @@ TEST_CASE("broken trees, weights and transforms are refused")
     refused([](Scene& s) { s.bvh.bvs[0].triangle_count -= 1; });
     refused([](Scene& s) { s.bvh.bvs[2].first_child = s.bvh.bvs[1].first_child; });
     refused([](Scene& s) { s.bvh.bvs[1].first_child = 0; });
-    refused([](Scene& s) { s.bvh.bvs.back().first_interval += 1; });
+    refused([](Scene& s) { s.bvh.bvs.back().first_influence += 1; });
     refused([](Scene& s) { s.e.surface.weights.weight[0] += 0x1p-53; });
     refused([](Scene& s) { s.e.surface.weights.weight[0] += 0x1p-54; });
     refused([](Scene& s) { s.e.surface.weights.row.back() += 1; });
@@ -236,15 +236,15 @@ TEST_CASE("damaged rest data are faults, whatever they hold")
             CHECK((scene.verdict(method, 6, s).failed[0] & rest_data));
     };
     faulty([](Bvh& bvh) { bvh.node[0] = 0xfffffff0u; });
-    faulty([](Bvh& bvh) { bvh.bvs[0].interval_count = 0; });
+    faulty([](Bvh& bvh) { bvh.bvs[0].influence_count = 0; });
     faulty([&](Bvh& bvh) { bvh.bvs[0].centre.x() = nan; });
     faulty([&](Bvh& bvh) { bvh.bvs[0].centre.x() = inf; });
-    faulty([&](Bvh& bvh) { bvh.bvs[0].half.x() = nan; });
-    faulty([&](Bvh& bvh) { bvh.bvs[0].half.x() = -1; });
+    faulty([&](Bvh& bvh) { bvh.bvs[0].box.half.x() = nan; });
+    faulty([&](Bvh& bvh) { bvh.bvs[0].box.half.x() = -1; });
     faulty([&](Bvh& bvh) { bvh.h[0] = nan; });
     Scene scene; // an infinite rest box holds everything, but then no finite bound follows from it
     const auto s = scene.supports(Method::limited, 6);
-    scene.bvh.bvs[0].half.x() = inf;
+    scene.bvh.bvs[0].box.half.x() = inf;
     CHECK(scene.verdict(Method::limited, 6, s).failed[0] == weight_space);
     CHECK(violated(scene.verdict(Method::limited, 6, scene.supports(Method::limited, 6))) == 0);
 }

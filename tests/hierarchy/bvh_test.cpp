@@ -88,7 +88,7 @@ TEST_CASE("hard meshes: one triangle, none, all alike, flat, huge, tiny")
             CHECK((std::isfinite(bv.centre.sum()) && std::isfinite(bv.half.sum())));
     }
     TriangleMesh flat{{{0, 0, 7}, {1, 0, 7}, {0, 1, 7}}, {{0, 1, 2}}};
-    CHECK(build_bvh(rigid(flat), 1).bvs[0].half.z() == 0);
+    CHECK(build_bvh(rigid(flat), 1).bvs[0].box.half.z() == 0);
 }
 
 TEST_CASE("intervals are the extremes over the vertices, 0 where a vertex is not influenced")
@@ -107,9 +107,9 @@ TEST_CASE("intervals are the extremes over the vertices, 0 where a vertex is not
     CHECK(root.vertex_influences == 2);
     const Bvh fine = build_bvh(surface, 1);
     const Bv& leaf = fine.bvs[fine.triangle[fine.bvs[1].first_triangle] == 0 ? 1 : 2];
-    CHECK(leaf.interval_count == 2);
-    CHECK(fine.l[leaf.first_interval] == 0.125);
-    CHECK(fine.h[leaf.first_interval + 1] == 0.875);
+    CHECK(leaf.influence_count == 2);
+    CHECK(fine.l[leaf.first_influence] == 0.125);
+    CHECK(fine.h[leaf.first_influence + 1] == 0.875);
 }
 
 TEST_CASE("a node that influences one child wholly and the other not at all has l = 0 above them")

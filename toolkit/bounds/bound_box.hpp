@@ -7,18 +7,9 @@
 
 #include "toolkit/bounds/directions.hpp"
 #include "toolkit/bounds/method.hpp"
-#include "toolkit/bounds/weight_space.hpp"
-#include "toolkit/surface/skin.hpp"
+#include "toolkit/bounds/rest_bv.hpp"
 
 namespace cinch {
-
-/// What one BV knows of its vertices in rest state. A view; owns nothing.
-struct RestBv {
-    Vec3 centre, half;                     ///< the real box centre ± half contains every rest vertex
-    std::span<const std::uint32_t> node;   ///< simulation nodes that influence it
-    WeightSpace space;                     ///< parallel to `node`
-    std::uint32_t vertex_influences = 0;   ///< most simulation nodes of any one of its vertices
-};
 
 /// Reused from call to call, so that bounding allocates nothing once warm.
 struct BoundScratch {
@@ -28,7 +19,8 @@ struct BoundScratch {
 
 /// The paper's k-DOP refit (§5.4) in O(n): 2·axes.size() supports of the deformed BV, place 2a along axis a and 2a + 1 against
 /// it. With Rounding::proven each is an upper bound for every exactly deformed and every computed vertex (evaluate.hpp), and
-/// in doubles limited ≤ eq12 ≤ convex. Anything that is not finite gives +∞. `method` is not `vertices`; there is at least one node.
+/// in doubles limited ≤ eq12 ≤ convex. Anything that is not finite gives +∞. `method` is convex, corners, eq12 or limited; there is at
+/// least one simulation node. The readable form of what kernel/ does fast.
 void bound_box(const RestBv& bv, std::span<const AffineMap> maps, Method method, Rounding rounding, std::span<const Axis> axes,
                BoundScratch& scratch, std::span<double> supports);
 

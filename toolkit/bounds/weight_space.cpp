@@ -38,23 +38,19 @@ double second_largest(std::span<const double> b) noexcept
     return second;
 }
 
-double best_lambda(WeightSpace space, std::span<const double> b, std::vector<std::pair<double, double>>& scratch)
+template <class T> T best_lambda(std::span<std::pair<T, T>> extremum_and_range, T slack) noexcept
 {
     // Starting at l, the largest b are raised to h until the weights sum to 1; λ is the b at which they do.
-    double slack = 1, smallest = b[0];
-    scratch.clear();
-    for (std::size_t j = 0; j < b.size(); ++j) {
-        slack -= space.l[j];
-        smallest = std::min(smallest, b[j]);
-        scratch.emplace_back(b[j], space.h[j] - space.l[j]);
-    }
-    auto first = scratch.begin(), last = scratch.end();
+    auto first = extremum_and_range.begin(), last = extremum_and_range.end();
+    T smallest = first->first;
+    for (const auto& e : extremum_and_range)
+        smallest = std::min(smallest, e.first);
     while (first != last) {
-        const double x = first->first, y = first[(last - first) / 2].first, z = (last - 1)->first;
-        const double pivot = std::max(std::min(x, y), std::min(std::max(x, y), z));
+        const T x = first->first, y = first[(last - first) / 2].first, z = (last - 1)->first;
+        const T pivot = std::max(std::min(x, y), std::min(std::max(x, y), z));
         const auto equal = std::partition(first, last, [&](const auto& e) { return e.first > pivot; });
         const auto less = std::partition(equal, last, [&](const auto& e) { return e.first == pivot; });
-        double greater_range = 0, equal_range = 0;
+        T greater_range = 0, equal_range = 0;
         for (auto e = first; e != equal; ++e)
             greater_range += e->second;
         if (greater_range > slack) {
@@ -71,6 +67,19 @@ double best_lambda(WeightSpace space, std::span<const double> b, std::vector<std
         first = less;
     }
     return smallest; // Σ h ≤ 1
+}
+template float best_lambda(std::span<std::pair<float, float>>, float) noexcept;
+template double best_lambda(std::span<std::pair<double, double>>, double) noexcept;
+
+double best_lambda(WeightSpace space, std::span<const double> b, std::vector<std::pair<double, double>>& scratch)
+{
+    double slack = 1;
+    scratch.clear();
+    for (std::size_t j = 0; j < b.size(); ++j) {
+        slack -= space.l[j];
+        scratch.emplace_back(b[j], space.h[j] - space.l[j]);
+    }
+    return best_lambda<double>(scratch, slack);
 }
 
 } // namespace cinch

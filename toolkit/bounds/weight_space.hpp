@@ -25,6 +25,8 @@ double second_largest(std::span<const double> b) noexcept;
 
 /// The λ that minimises D up to rounding, making it the exact optimum over W': the smallest b_m with
 /// Σ_{b_j > b_m} (h_j − l_j) ≤ 1 − Σ l. Weighted quickselect, O(n) on average. `scratch` is overwritten.
+/// The first form takes pairs (b_j, h_j − l_j), which it reorders, at least one, and 1 − Σ l.
+template <class T> T best_lambda(std::span<std::pair<T, T>> extremum_and_range, T slack) noexcept;
 double best_lambda(WeightSpace space, std::span<const double> b, std::vector<std::pair<double, double>>& scratch);
 
 } // namespace cinch

@@ -10,9 +10,9 @@
 
 namespace cinch {
 
-void round_dyadic(std::span<double> weights)
+void round_dyadic(std::span<double> weights, int bits)
 {
-    constexpr std::int64_t one = std::int64_t{1} << 53;
+    const std::int64_t one = std::int64_t{1} << bits;
     int exponent = 0;
     std::frexp(*std::max_element(weights.begin(), weights.end()), &exponent);
     for (double& w : weights) // by a power of two, which is exact but for what underflows: neither sum nor quotient can overflow
@@ -28,8 +28,8 @@ void round_dyadic(std::span<double> weights)
     std::vector<Part> parts(weights.size());
     std::int64_t missing = one;
     for (std::size_t i = 0; i < weights.size(); ++i) {
-        const double ideal = weights[i] / sum * 0x1p53; // the product is exact
-        const double floor = std::min(std::floor(ideal), 0x1p53);
+        const double ideal = std::ldexp(weights[i] / sum, bits);
+        const double floor = std::min(std::floor(ideal), static_cast<double>(one));
         parts[i] = {static_cast<std::int64_t>(floor), ideal - floor, i};
         missing -= parts[i].units;
     }
@@ -47,7 +47,7 @@ void round_dyadic(std::span<double> weights)
                 ++missing;
             }
     for (const Part& part : parts)
-        weights[part.index] = static_cast<double>(part.units) * weight_unit;
+        weights[part.index] = std::ldexp(static_cast<double>(part.units), -bits);
 }
 
 } // namespace cinch

@@ -4,17 +4,20 @@
 #include <cstdint>
 #include <vector>
 
-#include "toolkit/bounds/bound_box.hpp"
+#include "toolkit/bounds/rest_bv.hpp"
 #include "toolkit/deform/surface.hpp"
 
 namespace cinch {
 
-/// One bounding volume in rest state: rest box, and where its triangles, children and weight intervals lie in the Bvh.
+/// One bounding volume in rest state: rest box, and where its triangles, children and influences lie in the Bvh.
 struct Bv {
-    Vec3 centre = Vec3::Zero(), half = Vec3::Zero(); ///< rest box; the real box centre ± half contains every rest vertex
+    RestBox box;                                          ///< contains every rest vertex
+    Vec3 pivot = Vec3::Zero();                            ///< mean of the rest vertices, see WeightModel
+    double slack = 0;                                     ///< see RestBv::point
     std::uint32_t first_triangle = 0, triangle_count = 0; ///< in Bvh::triangle
     std::uint32_t first_child = 0;      ///< the other child is first_child + 1; 0 for a leaf (the root is nobody's child)
-    std::uint32_t first_interval = 0, interval_count = 0; ///< in Bvh::node, l, h
+    std::uint32_t first_influence = 0, influence_count = 0; ///< in Bvh::node, l, h, local, radius, model
+    std::uint32_t first_point = 0, point_count = 0;       ///< in Bvh::point
     std::uint32_t vertex_influences = 0; ///< most simulation nodes of any one of its vertices
 
     bool is_leaf() const { return first_child == 0; }
@@ -22,23 +25,30 @@ struct Bv {
 
 /// A binary tree of BVs over a surface, in flat arrays. BVs stand level by level, the root first, children after parents.
 struct Bvh {
-    std::vector<Bv> bvs;                   ///< empty for a mesh without triangles
-    std::vector<std::uint32_t> level;      ///< level i is BVs [level[i], level[i+1]); the last entry is bvs.size()
-    std::vector<std::uint32_t> triangle;   ///< a permutation of the mesh's triangles
-    std::vector<std::uint32_t> node;       ///< per BV ascending: every simulation node that influences any of its vertices
-    std::vector<double> l, h;              ///< per entry of `node` the least and greatest weight over the BV's vertices
+    std::vector<Bv> bvs;                 ///< empty for a mesh without triangles
+    std::vector<std::uint32_t> level;    ///< level i is BVs [level[i], level[i+1]); the last entry is bvs.size()
+    std::vector<std::uint32_t> triangle; ///< a permutation of the mesh's triangles
+    std::vector<std::uint32_t> node;     ///< per BV ascending: every simulation node that influences any of its vertices
+    std::vector<double> l, h;            ///< per entry of `node` the least and greatest weight over the BV's vertices
+    std::vector<RestBox> local;          ///< per entry of `node` a box around the BV's vertices that it influences
+    std::vector<double> radius;          ///< per entry of `node` of a ball about that box's centre around these vertices
+    std::vector<WeightModel> model;      ///< per entry of `node`
+    std::vector<std::uint32_t> point;    ///< extreme vertices of the BVs
 
     RestBv rest(std::size_t bv) const
     {
         const Bv& b = bvs[bv];
-        const auto first = b.first_interval, count = b.interval_count;
-        return {b.centre, b.half, std::span(node).subspan(first, count),
-                {std::span(l).subspan(first, count), std::span(h).subspan(first, count)}, b.vertex_influences};
+        auto mine = [&](const auto& all) { return std::span(all).subspan(b.first_influence, b.influence_count); };
+        return {b.box, mine(node), {mine(l), mine(h)}, mine(local), mine(radius), b.pivot, mine(model),
+                std::span(point).subspan(b.first_point, b.point_count), b.slack, b.vertex_influences};
     }
 };
 
 /// Median split along the longest axis of the covariance of the triangles' centroids, down to at most `leaf_triangles` ≥ 1 per
 /// leaf; ties are split by index, so the depth is logarithmic whatever the geometry. Deterministic.
 Bvh build_bvh(const DeformableSurface& surface, std::size_t leaf_triangles);
+
+/// The vertices of one BV's triangles, each once, in order of first use.
+std::vector<std::uint32_t> vertices_of(const DeformableSurface& surface, const Bvh& bvh, const Bv& bv);
 
 } // namespace cinch

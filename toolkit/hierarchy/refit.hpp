@@ -1,22 +1,55 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <span>
 
+#include "toolkit/bounds/method.hpp"
 #include "toolkit/hierarchy/bvh.hpp"
 
 namespace cinch {
 
+/// The arithmetic of the kernels. Both give proven bounds; float's are looser by a few 1e-6 of the surface's extent.
+enum class Precision { float32, float64 };
+
 struct RefitOptions {
-    Method method = Method::limited;
-    int kdop = 6; ///< 6, 14, 18 or 26
+    Methods methods = Method::best; ///< several are intersected
+    int kdop = 6;                   ///< 6, 14, 18 or 26
     Rounding rounding = Rounding::proven;
+    Precision precision = Precision::float64; ///< of the methods that have kernels: all but sphere, corners and vertices
+    int passes = 2;                 ///< evaluations of D for local, support and best
+    bool remember = false;          ///< λ of local, support and best begins where the last frame left it
 };
 
-/// Bounds every BV for one frame: supports[bv·k + d], d as in axes_of(k). `limited`, `eq12` and `convex` cost O(n) per BV and do
-/// not touch the vertices; `vertices` evaluates them. In parallel over BVs; the same bits for every thread count.
-/// Throws std::invalid_argument for sizes that do not fit and std::runtime_error for a changed floating-point environment.
-void refit(const Bvh& bvh, const DeformableSurface& surface, std::span<const AffineMap> maps, const RefitOptions& options,
-           std::span<double> supports);
+struct RefitReport {
+    std::size_t unbounded_nodes = 0; ///< simulation nodes whose transform is not finite, or too large for the arithmetic
+    std::size_t infinite = 0;        ///< supports that are +∞ for whatever reason
+};
+
+/// Bounds every BV of one surface, frame after frame. All but `vertices` cost O(n) per BV (`corners` O(n²)) and do not touch the
+/// vertices. Surface and BVH must stay as they are, and alive.
+class Refitter {
+public:
+    /// Prepares the rest data that the methods need. Throws std::invalid_argument for a k that is none.
+    Refitter(const Bvh& bvh, const DeformableSurface& surface, const RefitOptions& options);
+    ~Refitter();
+    Refitter(Refitter&&) noexcept;
+
+    /// supports[bv·k + d], d as in axes_of(k). In parallel over BVs; the same bits for every thread count and every target. A transform
+    /// that is not finite makes the supports of the BVs that its simulation node influences infinite, and changes no other.
+    /// Throws std::invalid_argument for sizes that do not fit and std::runtime_error for a changed floating-point environment.
+    RefitReport operator()(std::span<const AffineMap> maps, std::span<double> supports);
+
+    /// Of the rest data that the kernels stream.
+    std::size_t bytes() const;
+
+private:
+    struct Parts;
+    std::unique_ptr<Parts> parts_;
+};
+
+/// A single frame: prepares everything anew.
+RefitReport refit(const Bvh& bvh, const DeformableSurface& surface, std::span<const AffineMap> maps, const RefitOptions& options,
+                  std::span<double> supports);
 
 } // namespace cinch

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "toolkit/bounds/aligned.hpp"
+#include "toolkit/bounds/packed_bv.hpp"
+#include "toolkit/bounds/projected_maps.hpp"
+
+namespace cinch {
+
+/// What a call of the kernels reads; views, owning nothing.
+template <class T> struct KernelInput {
+    std::span<const PackedBv<T>> bvs;
+    std::span<const std::uint32_t> node;
+    std::span<const T> value;
+    const ProjectedMaps<T>* maps;
+    Rounding rounding = Rounding::proven;
+    int passes = 1;      ///< evaluations of D for local and support; 0 leaves them at the greatest b
+    T* remembered = nullptr; ///< 2·lanes λ per entry of bvs, NaN at first: where λ begins instead, and the next better λ; or null
+};
+
+/// Reused from call to call, so that bounding allocates nothing once warm.
+template <class T> struct KernelScratch {
+    AlignedVector<T> b; ///< per simulation node `lanes` extrema along the axes, then `lanes` against them
+    std::vector<std::pair<T, T>> select;
+};
+
+/// How a bound came about (the first of two): λ per lane along and against the axes, and the reference map (4 × lanes, zero for kinds without).
+template <class T> struct KernelTrace {
+    T lambda[2][16], reference[4][16];
+};
+
+/// Bounds BVs [first, last): supports[(bv − first)·k + d], d as in axes_of(k). With Rounding::proven each is an upper bound for every
+/// exactly deformed and every computed vertex. Whatever is not finite gives +∞. The arithmetic is IEEE with every operation
+/// and its order fixed, one lane per axis and simulation nodes in the order given: the same bits on every target.
+/// `trace`, if given, has one entry per BV.
+template <class T>
+void bound_packed(const KernelInput<T>& input, std::size_t first, std::size_t last, KernelScratch<T>& scratch, std::span<double> supports,
+                  KernelTrace<T>* trace = nullptr);
+
+/// The instruction sets that this machine can run, best first, and the one in use.
+std::vector<std::string> kernel_targets();
+std::string kernel_target();
+/// Uses only this target from now on; empty lifts it. False if there is none of that name here.
+bool force_kernel_target(std::string_view name);
+
+} // namespace cinch

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "toolkit/bounds/method.hpp"
+
+namespace cinch {
+
+/// One BV as the kernels read it: rest data in T (float or double), rounded outward, relative to a rest origin that all BVs of a
+/// tree share. Its simulation nodes and values stand in two contiguous runs. Values: per extreme point its 3 coordinates
+/// relative to the pivot, then per simulation node a record whose shape depends on the kind:
+///   convex, eq12, limited   l, r
+///   local                   l, r, centre[3], half[3], radius: the box cut by a ball about its centre
+///   support                 l, r, centre[3], half[3], mean
+///   linear                  mean, gradient[3], residual, moment[3]
+/// with r = h − l. The real weights lie in [l, l + r], and Σ mean = 1 exactly.
+template <class T> struct PackedBv {
+    Method kind = Method::convex; ///< convex, eq12, limited, local, support or linear
+    std::uint32_t count = 0;      ///< simulation nodes
+    std::uint32_t points = 0;     ///< extreme points; 0 for kinds that have no use for them
+    std::uint32_t first_node = 0;
+    std::uint32_t also = 0;       ///< place of a second bound of the same BV to intersect with; 0 if there is none
+    std::uint64_t first_value = 0;
+    T centre[3] = {}, half[3] = {}; ///< rest box; used by kinds without local boxes
+    T pivot[3] = {};                ///< origin of the points and of the weight model
+    T slack = 0;                    ///< max q·y over all vertices is at most that over the points + slack·‖q‖, also as computed
+    T sum_l = 0, sum_r = 0;         ///< about; they only steer λ
+    T start = 0;                    ///< λ begins at mean b + start·(greatest b − mean b)
+    T error_factor = 1;             ///< of the per-node error, see rounding.hpp
+
+    static constexpr std::size_t record(Method kind)
+    {
+        return kind == Method::linear ? 8 : kind == Method::local || kind == Method::support ? 9 : 2;
+    }
+};
+
+} // namespace cinch

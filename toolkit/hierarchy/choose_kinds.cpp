@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include <Eigen/Geometry>
+#include <tbb/enumerable_thread_specific.h>
+
+#include "toolkit/deform/parallel.hpp"
+#include "toolkit/hierarchy/packed_bvh.hpp"
+#include "toolkit/hierarchy/spheres.hpp"
+
+namespace cinch {
+namespace {
+
+constexpr int kdop = 6;
+
+// p → R (p + S p + Q(p, p)) in units of the surface, R a rotation, S and Q small and random; value and Jacobian at each node.
+std::vector<AffineMap> synthetic_frame(std::span<const Vec3> node, const RestBox& box, double strength, std::mt19937_64& random)
+{
+    const double unit = box.half.maxCoeff() > 0 ? box.half.maxCoeff() : 1;
+    auto uniform = [&](double most) { return most * (static_cast<double>(random() >> 11) * 0x1p-52 - 1); }; // the same everywhere
+    Eigen::Matrix3d strain, quadratic[3];
+    for (int i = 0; i < 9; ++i)
+        strain(i) = uniform(0.2);
+    for (auto& q : quadratic)
+        for (int i = 0; i < 9; ++i)
+            q(i) = uniform(strength);
+    Eigen::Quaterniond rotation(uniform(1), uniform(1), uniform(1), uniform(1));
+    rotation.normalize();
+    const Eigen::Matrix3d r = rotation.toRotationMatrix();
+    std::vector<AffineMap> maps;
+    for (const Vec3& x : node) {
+        const Vec3 p = (x - box.centre) / unit;
+        Vec3 value = p + strain * p;
+        Eigen::Matrix3d jacobian = Eigen::Matrix3d::Identity() + strain;
+        for (int i = 0; i < 3; ++i) {
+            value[i] += p.dot(quadratic[i] * p);
+            jacobian.row(i) += ((quadratic[i] + quadratic[i].transpose()) * p).transpose();
+        }
+        value = r * value * unit;
+        jacobian = r * jacobian;
+        const Vec3 t = value - jacobian * x;
+        AffineMap map;
+        for (int i = 0; i < 3; ++i) {
+            for (int s = 0; s < 3; ++s)
+                map.m[i][s] = jacobian(i, s);
+            map.m[i][3] = t[i];
+        }
+        maps.push_back(map);
+    }
+    return maps;
+}
+
+// Supports of every BV in every frame, and each BV's sum of them: a measure of width.
+struct Trial {
+    std::vector<double> supports, width; // [frame][bv][direction], [bv]
+};
+
+Trial attempt(const PackedBvh<double>& packed, std::span<const ProjectedMaps<double>> frames)
+{
+    const std::size_t all = packed.bvs.size() * kdop;
+    Trial trial{std::vector<double>(frames.size() * all), std::vector<double>(packed.bvs.size(), 0.0)};
+    tbb::enumerable_thread_specific<KernelScratch<double>> scratch;
+    parallel_blocks(packed.bvs.size(), 64, [&](std::size_t first, std::size_t last) {
+        for (std::size_t f = 0; f < frames.size(); ++f) {
+            const auto supports = std::span(trial.supports).subspan(f * all + first * kdop, (last - first) * kdop);
+            bound_packed<double>({packed.bvs, packed.node, packed.value, &frames[f], Rounding::plain, 1}, first, last, scratch.local(), supports);
+            for (std::size_t i = 0; i < supports.size(); ++i)
+                trial.width[first + i / kdop] += supports[i];
+        }
+    });
+    return trial;
+}
+
+// The start of λ that suits each BV best, for one kind, and what comes of it.
+Trial calibrate(const Bvh& bvh, const DeformableSurface& surface, Method kind, std::span<const ProjectedMaps<double>> frames, std::vector<double>& start)
+{
+    PackedBvh<double> packed = pack<double>(bvh, surface, std::vector<ChosenKind>(bvh.bvs.size(), {kind, {}, 0, 0}));
+    start.assign(bvh.bvs.size(), 0.0);
+    Trial best = attempt(packed, frames);
+    if (kind == Method::linear)
+        return best;
+    for (const double candidate : {0.3, 0.6, 0.8, 0.9, 1.0}) {
+        for (PackedBv<double>& bv : packed.bvs)
+            bv.start = candidate;
+        const Trial trial = attempt(packed, frames);
+        for (std::size_t i = 0; i < trial.width.size(); ++i) {
+            if (!(trial.width[i] < best.width[i]))
+                continue;
+            start[i] = candidate;
+            best.width[i] = trial.width[i];
+            for (std::size_t f = 0; f < frames.size(); ++f)
+                std::copy_n(&trial.supports[(f * bvh.bvs.size() + i) * kdop], kdop, &best.supports[(f * bvh.bvs.size() + i) * kdop]);
+        }
+    }
+    return best;
+}
+
+} // namespace
+
+std::vector<ChosenKind> choose_kinds(const Bvh& bvh, const DeformableSurface& surface, Method method)
+{
+    std::vector<ChosenKind> chosen(bvh.bvs.size(), {method, {}, 0, 0});
+    if (bvh.bvs.empty() || method == Method::convex || method == Method::eq12 || method == Method::limited || method == Method::linear)
+        return chosen;
+    std::mt19937_64 random(20080101);
+    const RestBox& root = bvh.bvs[0].box;
+    const std::vector<Vec3> place = node_places(surface);
+    std::vector<ProjectedMaps<double>> frames;
+    for (const double strength : {0.3, 0.3, 0.9, 0.9})
+        project<double>(synthetic_frame(place, root, strength, random), rest_extent(bvh, surface), kdop, Rounding::plain, frames.emplace_back());
+
+    if (method != Method::best) {
+        std::vector<double> start;
+        calibrate(bvh, surface, method, frames, start);
+        for (std::size_t i = 0; i < chosen.size(); ++i)
+            chosen[i].start = start[i];
+        return chosen;
+    }
+    constexpr Method kinds[] = {Method::linear, Method::support, Method::local};
+    constexpr double worth_twice = 0.96; // of the width, for two bounds that cost twice the time
+    Trial trial[3];
+    std::vector<double> start[3];
+    for (std::size_t k = 0; k < 3; ++k)
+        trial[k] = calibrate(bvh, surface, kinds[k], frames, start[k]);
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+        auto both = [&](std::size_t a, std::size_t b) { // width of the intersection
+            double width = 0;
+            for (std::size_t f = 0; f < frames.size(); ++f)
+                for (std::size_t d = 0; d < kdop; ++d) {
+                    const std::size_t place_of = (f * bvh.bvs.size() + i) * kdop + d;
+                    width += std::min(trial[a].supports[place_of], trial[b].supports[place_of]);
+                }
+            return width;
+        };
+        std::size_t best = 0;
+        for (std::size_t k = 1; k < 3; ++k)
+            if (trial[k].width[i] < trial[best].width[i])
+                best = k;
+        chosen[i] = {kinds[best], {}, start[best][i], 0};
+        double width = worth_twice * trial[best].width[i];
+        for (std::size_t a = 0; a < 3; ++a)
+            for (std::size_t b = a + 1; b < 3; ++b)
+                if (const double w = both(a, b); w < width) {
+                    width = w;
+                    chosen[i] = {kinds[a], kinds[b], start[a][i], start[b][i]};
+                }
+    }
+    return chosen;
+}
+
+} // namespace cinch

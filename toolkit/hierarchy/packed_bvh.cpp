@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "toolkit/hierarchy/packed_bvh.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "toolkit/bounds/rounding.hpp"
+#include "toolkit/deform/dyadic.hpp"
+
+namespace cinch {
+namespace {
+
+// At least x, for x ≥ 0.
+template <class T> T up(double x)
+{
+    const T t = static_cast<T>(x);
+    return static_cast<double>(t) >= x ? t : std::nextafter(t, std::numeric_limits<T>::infinity());
+}
+template <class T> T down(double x)
+{
+    const T t = static_cast<T>(x);
+    return static_cast<double>(t) <= x ? t : std::nextafter(t, T(0));
+}
+
+// A coordinate about the rest origin in T, and a bound on how far it is off. x − o is exact for o = 0.
+template <class T> struct Shifted {
+    T value;
+    double off;
+};
+template <class T> Shifted<T> shifted(double x, double origin)
+{
+    const double d = x - origin;
+    const T value = static_cast<T>(d);
+    const double lost = origin == 0 ? 0 : succ(unit_roundoff * std::abs(d));
+    const double off = std::abs(d - static_cast<double>(value)); // exact: 0, or a difference of neighbours
+    return {value, off == 0 ? lost : succ(off + lost)};
+}
+
+double sum_up(double a, double b) { return b == 0 ? a : a == 0 ? b : succ(a + b); }
+
+template <class T> void put_box(const RestBox& box, const Vec3& origin, T* centre, T* half)
+{
+    for (int s = 0; s < 3; ++s) {
+        const Shifted<T> c = shifted<T>(box.centre[s], origin[s]);
+        centre[s] = c.value;
+        half[s] = up<T>(sum_up(box.half[s], c.off));
+    }
+}
+
+// Packs one BV; `value` and `node` grow at their ends.
+template <class T> class Packer {
+public:
+    Packer(const DeformableSurface& surface, PackedBvh<T>& out) : surface_(surface), out_(out) {}
+
+    void pack(const RestBv& rest, Method kind, double start)
+    {
+        if (sizeof(T) == 4 && rest.node.size() > most_nodes_in_float)
+            throw std::length_error("pack: too many simulation nodes in a BV for float");
+        bv_ = {};
+        bv_.kind = kind;
+        bv_.start = static_cast<T>(start);
+        bv_.count = static_cast<std::uint32_t>(rest.node.size());
+        bv_.first_node = static_cast<std::uint32_t>(out_.node.size());
+        bv_.first_value = out_.value.size();
+        out_.node.insert(out_.node.end(), rest.node.begin(), rest.node.end());
+        put_box(rest.box, out_.rest.origin, bv_.centre, bv_.half);
+        if (kind == Method::support || kind == Method::linear)
+            put_points(rest);
+        if (kind == Method::linear)
+            put_models(rest);
+        else
+            put_intervals(rest);
+        out_.bvs.push_back(bv_);
+    }
+
+private:
+    void put(double x) { out_.value.push_back(static_cast<T>(x)); }
+
+    // x − o = pivot + y + an error that goes to the slack.
+    void put_points(const RestBv& rest)
+    {
+        for (int s = 0; s < 3; ++s) {
+            const Shifted<T> z = shifted<T>(rest.pivot[s], out_.rest.origin[s]);
+            bv_.pivot[s] = z.value;
+            pivot_off_[s] = z.off;
+        }
+        bv_.points = static_cast<std::uint32_t>(rest.point.size());
+        Vec3 off = Vec3::Zero();
+        for (std::uint32_t v : rest.point)
+            for (int s = 0; s < 3; ++s) {
+                const double o = out_.rest.origin[s], x = surface_.mesh.vertices[v][s] - o, y = x - static_cast<double>(bv_.pivot[s]);
+                put(y);
+                const double rounding = unit_roundoff * (std::abs(y) + (o == 0 ? 0 : std::abs(x)));
+                off[s] = std::max(off[s], succ(std::abs(y - static_cast<double>(out_.value.back())) + succ(rounding)));
+            }
+        // Σ|q_s| off_s ≤ ‖q‖ Σ off_s; the factor is for the rounding of ‖q‖ and of the product, 2 + 2 + 1/2 + 1 steps at most.
+        bv_.slack = up<T>(succ(succ(rest.slack + succ(succ(off[0] + off[1]) + off[2])) * (1 + 8 * unit_roundoff_of<T>)));
+    }
+
+    void put_intervals(const RestBv& rest)
+    {
+        const auto means = rounded_means(rest);
+        for (std::size_t j = 0; j < rest.node.size(); ++j) {
+            const T l = down<T>(rest.space.l[j]), r = up<T>(rest.space.h[j] - static_cast<double>(l)); // dyadic: exact
+            put(l);
+            put(r);
+            bv_.sum_l += l;
+            bv_.sum_r += r;
+            if (bv_.kind != Method::local && bv_.kind != Method::support)
+                continue;
+            T box[6];
+            put_box(rest.local[j], out_.rest.origin, box, box + 3);
+            out_.value.insert(out_.value.end(), box, box + 6);
+            if (bv_.kind == Method::support)
+                put(means[j]);
+            else
+                put_radius(rest.local[j], rest.radius[j]);
+        }
+    }
+
+    // About the packed centre.
+    void put_radius(const RestBox& box, double radius)
+    {
+        double moved = 0;
+        for (int s = 0; s < 3; ++s)
+            moved = sum_up(moved, shifted<T>(box.centre[s], out_.rest.origin[s]).off);
+        out_.value.push_back(up<T>(sum_up(radius, moved)));
+    }
+
+    // Means become multiples of 2^-24 for float, still with sum 1; all that moves goes to residual and moment.
+    void put_models(const RestBv& rest)
+    {
+        const auto means = rounded_means(rest);
+        double kappa = 0;
+        Vec3 reach; // of |y| about the pivot
+        for (int s = 0; s < 3; ++s)
+            reach[s] = succ(std::abs(static_cast<double>(bv_.centre[s]) - static_cast<double>(bv_.pivot[s])) * (1 + 4 * unit_roundoff) + static_cast<double>(bv_.half[s]));
+        for (std::size_t j = 0; j < rest.node.size(); ++j) {
+            const WeightModel& model = rest.model[j];
+            const double moved = std::abs(model.mean - means[j]); // dyadic: exact
+            double residual = sum_up(model.residual, moved), moment_share = 0;
+            T gradient[3], moment[3];
+            for (int s = 0; s < 3; ++s) {
+                gradient[s] = static_cast<T>(model.gradient[s]);
+                const double g = static_cast<double>(gradient[s]), change = std::abs(model.gradient[s] - g);
+                residual = sum_up(residual, up_product(change, reach[s]));
+                residual = sum_up(residual, up_product(std::abs(g), pivot_off_[s]));
+                const double m = sum_up(sum_up(model.moment[s], pivot_off_[s]), up_product(moved, reach[s]));
+                moment[s] = up<T>(m);
+                kappa += std::abs(g) * reach[s];
+                const double about = std::abs(static_cast<double>(bv_.centre[s])) + static_cast<double>(bv_.half[s]);
+                if (m > 0)
+                    moment_share = std::max(moment_share, m / about);
+            }
+            kappa += residual + moment_share;
+            put(means[j]);
+            out_.value.insert(out_.value.end(), gradient, gradient + 3);
+            out_.value.push_back(up<T>(residual));
+            out_.value.insert(out_.value.end(), moment, moment + 3);
+        }
+        bv_.error_factor = up<T>(linear_error_factor(static_cast<double>(rest.node.size()), kappa * (1 + 0x1p-20)));
+    }
+
+    static double up_product(double a, double b) { return a == 0 || b == 0 ? 0 : succ(succ(a * b)); }
+
+    static std::vector<double> rounded_means(const RestBv& rest)
+    {
+        std::vector<double> means;
+        for (const WeightModel& model : rest.model)
+            means.push_back(model.mean);
+        if (sizeof(T) == 4)
+            round_dyadic(means, 24);
+        return means;
+    }
+
+    const DeformableSurface& surface_;
+    PackedBvh<T>& out_;
+    PackedBv<T> bv_;
+    Vec3 pivot_off_ = Vec3::Zero();
+};
+
+// On a grid so coarse that it is (0, 0, 0) unless the surface lies far from there.
+Vec3 rest_origin(const RestBox& root)
+{
+    const double grid = std::exp2(std::ceil(std::log2(root.half.maxCoeff()))) * 4;
+    Vec3 origin = Vec3::Zero();
+    for (int s = 0; s < 3; ++s)
+        if (grid > 0 && std::isfinite(grid) && std::abs(root.centre[s] / grid) < 0x1p50)
+            origin[s] = std::round(root.centre[s] / grid) * grid;
+    return origin;
+}
+
+} // namespace
+
+RestExtent rest_extent(const Bvh& bvh, const DeformableSurface& surface)
+{
+    RestExtent rest;
+    if (bvh.bvs.empty())
+        return rest;
+    rest.origin = rest_origin(bvh.bvs[0].box);
+    for (const Bv& bv : bvh.bvs) {
+        // Room for rounding to float and for local boxes, which may reach past the BV's by their own; pivots lie inside.
+        rest.about_origin = rest.about_origin.cwiseMax(((bv.box.centre - rest.origin).cwiseAbs() + bv.box.half) * (1 + 0x1p-20));
+        rest.influences = std::max(rest.influences, static_cast<double>(bv.vertex_influences));
+    }
+    for (const Vec3& x : surface.mesh.vertices)
+        rest.absolute = rest.absolute.cwiseMax(x.cwiseAbs());
+    return rest;
+}
+
+template <class T> PackedBvh<T> pack(const Bvh& bvh, const DeformableSurface& surface, std::span<const ChosenKind> kinds)
+{
+    PackedBvh<T> out;
+    out.rest = rest_extent(bvh, surface);
+    Packer<T> packer(surface, out);
+    for (std::size_t i = 0; i < bvh.bvs.size(); ++i)
+        packer.pack(bvh.rest(i), kinds[i].kind, kinds[i].start);
+    for (std::size_t i = 0; i < bvh.bvs.size(); ++i)
+        if (kinds[i].also) {
+            out.bvs[i].also = static_cast<std::uint32_t>(out.bvs.size());
+            packer.pack(bvh.rest(i), *kinds[i].also, kinds[i].also_start);
+        }
+    out.bvs.shrink_to_fit();
+    out.node.shrink_to_fit();
+    out.value.shrink_to_fit();
+    return out;
+}
+
+template PackedBvh<float> pack(const Bvh&, const DeformableSurface&, std::span<const ChosenKind>);
+template PackedBvh<double> pack(const Bvh&, const DeformableSurface&, std::span<const ChosenKind>);
+
+} // namespace cinch

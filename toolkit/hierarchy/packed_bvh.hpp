@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "toolkit/bounds/kernel/bound_kernel.hpp"
+#include "toolkit/hierarchy/bvh.hpp"
+
+namespace cinch {
+
+/// What the kernels need of a Bvh, in T, each BV with one kind of bound. Stands alone: the Bvh may go.
+template <class T> struct PackedBvh {
+    std::vector<PackedBv<T>> bvs; ///< as Bvh::bvs, then those that PackedBv::also names
+    std::vector<std::uint32_t> node;
+    AlignedVector<T> value;
+    RestExtent rest;
+
+    std::size_t bytes() const { return bvs.size() * sizeof(bvs[0]) + node.size() * sizeof(node[0]) + value.size() * sizeof(value[0]); }
+};
+
+/// One kind of bound for a BV or two, and where their λ begin (PackedBv::start).
+struct ChosenKind {
+    Method kind = Method::support;
+    std::optional<Method> also;
+    double start = 0, also_start = 0;
+};
+
+/// Coordinates of the packed rest data: any origin will do, but the same for all that share a frame's projected maps.
+RestExtent rest_extent(const Bvh& bvh, const DeformableSurface& surface);
+
+/// For convex, eq12, limited and linear that kind; for local and support that kind with λ begun where it did best on synthetic
+/// deformations; for `best` whichever of linear, support and local did best there, or two of them where that is worth the time.
+/// The deformations are random quadratic ones, each node moving as at the mean of the vertices it influences. Deterministic.
+std::vector<ChosenKind> choose_kinds(const Bvh& bvh, const DeformableSurface& surface, Method method);
+
+/// Rounds everything outward to T. Throws std::length_error for float and a BV of more than 65,536 simulation nodes.
+template <class T> PackedBvh<T> pack(const Bvh& bvh, const DeformableSurface& surface, std::span<const ChosenKind> kinds);
+
+} // namespace cinch
