@@ -1,19 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "toolkit/bounds/method.hpp"
 
 namespace cinch {
 
+/// Simulation nodes and points stand in blocks of 8, one virtual lane each; the last one is repeated, with no weight, to fill a block.
+inline constexpr std::size_t block_lanes = 8;
+constexpr std::size_t blocks_of(std::size_t count) { return (count + block_lanes - 1) / block_lanes; }
+
 /// One BV as the kernels read it: rest data in T (float or double), rounded outward, relative to a rest origin that all BVs of a
-/// tree share. Its simulation nodes and values stand in two contiguous runs. Values: per extreme point its 3 coordinates
-/// relative to the pivot, then per simulation node a record whose shape depends on the kind:
+/// tree share. Its simulation nodes and values stand in two contiguous runs. Values: per block of extreme points their x, y and z
+/// relative to the pivot, 8 each; then per block of simulation nodes 8 each of what the kind needs:
 ///   convex, eq12, limited   l, r
-///   local                   l, r, centre[3], half[3], radius: the box cut by a ball about its centre
-///   support                 l, r, centre[3], half[3], mean
-///   linear                  mean, gradient[3], residual, moment[3]
+///   local                   l, r, centre (3), half (3), radius: the box cut by a ball about its centre
+///   support                 l, r, centre (3), half (3), mean
+///   linear                  mean, gradient (3), residual, moment (3)
 /// with r = h − l. The real weights lie in [l, l + r], and Σ mean = 1 exactly.
 template <class T> struct PackedBv {
     Method kind = Method::convex; ///< convex, eq12, limited, local, support or linear
@@ -25,11 +30,11 @@ template <class T> struct PackedBv {
     T centre[3] = {}, half[3] = {}; ///< rest box; used by kinds without local boxes
     T pivot[3] = {};                ///< origin of the points and of the weight model
     T slack = 0;                    ///< max q·y over all vertices is at most that over the points + slack·‖q‖, also as computed
-    T sum_l = 0, sum_r = 0;         ///< about; they only steer λ
+    T sum_l = 0, sum_r = 0;         ///< about; they only steer λ, but sum_l = 0 if and only if every l is
     T start = 0;                    ///< λ begins at mean b + start·(greatest b − mean b)
     T error_factor = 1;             ///< of the per-node error, see rounding.hpp
 
-    static constexpr std::size_t record(Method kind)
+    static constexpr std::size_t rows(Method kind)
     {
         return kind == Method::linear ? 8 : kind == Method::local || kind == Method::support ? 9 : 2;
     }

@@ -80,16 +80,16 @@ template <class T> T rounded_up(double x)
 template <class T>
 void project(std::span<const AffineMap> maps, const RestExtent& rest, int kdop, Rounding rounding, ProjectedMaps<T>& out)
 {
-    const std::size_t lanes = lanes_of(kdop);
+    const auto axes = axes_of(kdop);
+    const std::size_t record = 4 * projected_rows(axes.size());
     out.kdop = kdop;
     out.unbounded = 0;
     out.origin = maps.empty() ? Vec3::Zero() : body_origin(maps, rest);
-    out.value.assign(maps.size() * out.rows * lanes, 0);
-    const auto axes = axes_of(kdop);
+    out.value.assign(maps.size() * record, 0);
     for (std::size_t j = 0; j < maps.size(); ++j) {
         const Row rows[3] = {shifted_row(maps[j].m[0], rest.origin, out.origin[0]), shifted_row(maps[j].m[1], rest.origin, out.origin[1]),
                              shifted_row(maps[j].m[2], rest.origin, out.origin[2])};
-        T* const q = out.value.data() + j * out.rows * lanes;
+        T* const q = out.value.data() + j * record;
         double error = 0;
         bool bounded = true;
         for (std::size_t a = 0; a < axes.size(); ++a) {
@@ -112,21 +112,25 @@ void project(std::span<const AffineMap> maps, const RestExtent& rest, int kdop, 
                 world += magnitude[s] * rest.absolute[static_cast<int>(s)];
             }
             for (std::size_t s = 0; s < 4; ++s)
-                q[s * lanes + a] = static_cast<T>(along[s]);
+                q[4 * a + s] = static_cast<T>(along[s]);
             // Of q as stored: 3 products, 2 sums and a root, 4 roundings and half of one.
-            const double x = static_cast<double>(q[a]), y = static_cast<double>(q[lanes + a]), z = static_cast<double>(q[2 * lanes + a]);
-            q[4 * lanes + a] = rounded_up<T>(safe_norm(x, y, z) * (1 + 8 * unit_roundoff));
+            const double x = static_cast<double>(q[4 * a]), y = static_cast<double>(q[4 * a + 1]), z = static_cast<double>(q[4 * a + 2]);
+            q[4 * axes.size() + a] = rounded_up<T>(safe_norm(x, y, z) * (1 + 8 * unit_roundoff));
             bounded &= about <= static_cast<double>(magnitude_limit<T>); // false for NaN
             error = std::max(error, node_error<T>(about, rest.about_origin.sum(), lost) + evaluation_error(rest.influences, world));
         }
-        T& charge = q[3 * lanes + lanes - 1];
+        T& charge = q[record - 1];
         charge = rounding == Rounding::proven ? rounded_up<T>(succ(error)) : T(0);
         if (!bounded || !(charge < std::numeric_limits<T>::infinity())) {
-            std::fill_n(q, out.rows * lanes, T(0));
+            std::fill_n(q, record, T(0));
             charge = std::numeric_limits<T>::infinity();
             ++out.unbounded;
         }
     }
+    out.octet.assign((maps.size() + 7) / 8 * 8 * record, T(0));
+    for (std::size_t j = 0; j < maps.size(); ++j)
+        for (std::size_t p = 0; p < record; ++p)
+            out.octet[(j / 8 * record + p) * 8 + j % 8] = out.value[j * record + p];
 }
 
 template void project(std::span<const AffineMap>, const RestExtent&, int, Rounding, ProjectedMaps<float>&);

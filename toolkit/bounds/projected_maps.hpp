@@ -11,8 +11,8 @@
 
 namespace cinch {
 
-/// How many lanes the kernels use for the k/2 axes of a k-DOP. The last one is never an axis: it carries errors.
-constexpr std::size_t lanes_of(int kdop) { return kdop == 6 ? 4 : kdop == 14 ? 8 : kdop == 18 ? 12 : 16; }
+/// Rows of 4 values that a simulation node's projected map takes: one per axis, and one place per axis and one more.
+constexpr std::size_t projected_rows(std::size_t axes) { return axes + axes / 4 + 1; }
 
 /// What projecting needs to know of a surface at rest.
 struct RestExtent {
@@ -22,18 +22,17 @@ struct RestExtent {
     double influences = 0;          ///< most simulation nodes of a vertex
 };
 
-/// The transforms of one frame along the axes of a k-DOP: per simulation node q_s = (Aᵀγ)_s for s = 0, 1, 2 and
-/// θ = γ·(A o + t − O) and ν ≥ ‖q‖, each `lanes` values of T, o the rest origin and O `origin`. The last lane has q = 0 and θ = an
-/// upper bound on all errors that this node can cause (rounding.hpp), +∞ if its transform is not finite or too large for T.
+/// The transforms of one frame along the axes of a k-DOP. Per simulation node a record: for every axis q = Aᵀγ (3 values) and
+/// θ = γ·(A o + t − O), o the rest origin and O `origin`; then for every axis ν ≥ ‖q‖; in the last place an upper bound on all
+/// errors that this node can cause (rounding.hpp), +∞ (and all else 0) if its transform is not finite or too large for T.
 template <class T> struct ProjectedMaps {
-    static constexpr std::size_t rows = 5;
-
     int kdop = 6;
     Vec3 origin = Vec3::Zero();
     std::size_t unbounded = 0; ///< simulation nodes whose error is +∞
-    AlignedVector<T> value;    ///< simulation node × 5 × lanes
+    AlignedVector<T> value;    ///< records
+    AlignedVector<T> octet;    ///< the same by eights: of nodes 8i to 8i + 7 the first values, 8 in a row, then the second ones, …
 
-    const T* of(std::uint32_t node) const { return value.data() + node * rows * lanes_of(kdop); }
+    const T* of(std::uint32_t node) const { return value.data() + node * 4 * projected_rows(static_cast<std::size_t>(kdop / 2)); }
 };
 
 /// `out` keeps its memory. With Rounding::plain errors are 0 (or +∞).

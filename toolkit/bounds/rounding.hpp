@@ -15,12 +15,15 @@ inline constexpr double unit_roundoff = 0x1p-53;
 inline constexpr double smallest_subnormal = 0x1p-1074;
 inline constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// At least the next double above x, for every finite x: fl(x + fl(fl(φ|x|) + η)), φ = u(1 + 2u)
+template <class T> inline constexpr T unit_roundoff_of = sizeof(T) == 4 ? T(0x1p-24) : T(0x1p-53);
+template <class T> inline constexpr T smallest_subnormal_of = sizeof(T) == 4 ? T(0x1p-149) : T(0x1p-1074);
+
+/// At least the next T above x, for every finite x: fl(x + fl(fl(φ|x|) + η)), φ = u(1 + 2u)
 /// [Rump, Zimmermann, Boldo, Melquiond 2009]. At most two steps up. So fl(a + b) ≤ succ(fl(a + b)) bounds a + b exactly.
-inline double succ(double x) noexcept
+template <class T> inline T succ(T x) noexcept
 {
-    constexpr double phi = unit_roundoff * (1 + 2 * unit_roundoff);
-    return x + (phi * std::abs(x) + smallest_subnormal);
+    constexpr T phi = unit_roundoff_of<T> * (1 + 2 * unit_roundoff_of<T>);
+    return x + (phi * std::abs(x) + smallest_subnormal_of<T>);
 }
 
 /// max over the nodes of a bound on |b̂_j − b_j|: the extremum of a box c ± e along an axis is computed as
@@ -54,7 +57,7 @@ inline double sum_error(double nodes, double absolute_sum) noexcept
 // The kernels (kernel/bound_kernel.hpp) work in T = float or double with unit roundoff u_T, on projected maps q, θ and rest data
 // rounded outward, relative to a reference map q̄, θ̄ = Σ m_j (q_j, θ_j) (zero for the kinds without one). Let
 //   N_j ≥ Σ_s a_s X_s + a_3,   a_s = Σ_r |γ_r A_rs|,   a_3 = Σ_r |γ_r d_r|,   X_s ≥ |x_s − o_s| over every box,
-// and N its maximum over the BV's nodes; |q̄_s|, |θ̄| are at most 1.01 times their maxima, since Σm = 1 and n·u_T < 1/100.
+// and N its maximum over the BV's nodes; |q̄_s|, |θ̄| are at most 1.01 times their maxima, since Σm = 1 and sums of T's are within 1/100.
 //   stored q, θ: 2 and 3 double roundings of sums of ≤ 3, and one to T: 3u N;
 //   b̂ = (dq·c + dθ) ± |dq|·e with dq = q − q̄: 1 (difference) + 3 (fma) + 1 roundings on ≤ N + 1.01 N: γ₅·2.01 N < 10.3u N;
 //   reference: q̄·z + θ̄ and the points' q̄·y, with |z| ≤ X and |y| ≤ 2X: 3 roundings on ≤ 3.03 N: 10u N. The slack has its own
@@ -63,8 +66,6 @@ inline double sum_error(double nodes, double absolute_sum) noexcept
 // and coordinate, those of q with X up to X·η: 128η(1 + ΣX).
 
 inline constexpr double kernel_error_constant = 48;
-template <class T> inline constexpr double unit_roundoff_of = sizeof(T) == 4 ? 0x1p-24 : unit_roundoff;
-template <class T> inline constexpr double smallest_subnormal_of = sizeof(T) == 4 ? 0x1p-149 : smallest_subnormal;
 /// Where N_j is at most this, no sum of fewer than 2²⁰ terms of the kernels overflows.
 template <class T> inline constexpr double magnitude_limit = static_cast<double>(std::numeric_limits<T>::max()) * 0x1p-24;
 
@@ -72,26 +73,32 @@ template <class T> inline constexpr double magnitude_limit = static_cast<double>
 /// the error of d beyond u|d|.
 template <class T> inline double node_error(double magnitude, double extent, double lost) noexcept
 {
-    return succ(kernel_error_constant * unit_roundoff_of<T> * magnitude + 128 * smallest_subnormal_of<T> * (1 + extent) + 4 * lost);
+    return succ(kernel_error_constant * static_cast<double>(unit_roundoff_of<T>) * magnitude + 128 * static_cast<double>(smallest_subnormal_of<T>) * (1 + extent) + 4 * lost);
 }
 
-/// The kernels' Σ l·a + Σ r·max(a, 0), a = fl(b̂ − λ), over n nodes is off by at most factor·(width + fl Σ r·max(a, 0)) + underflow, width
-/// the computed max |a|: the greatest b̂ − λ and λ + the greatest b̂ against the axis bound it, as b̂₊ ≥ p ≥ −b̂₋ and rounding is
-/// monotonic. A term passes 1 (−) + n (fma) + 1 (+) roundings, Σ l ≤ 1, exact Σ r·max(a, 0) ≤ computed/(1 − γ_{n+1}) + nη:
-/// γ_{n+2}/(1 − γ_{n+1}) < (1.02n + 3)u for n·u ≤ 1/200; 5u are left for its own roundings.
-template <class T> inline T dual_sum_factor(double nodes) noexcept { return static_cast<T>((1.02 * nodes + 8) * unit_roundoff_of<T>); }
-template <class T> inline T dual_sum_underflow(double nodes) noexcept { return static_cast<T>(2 * nodes * smallest_subnormal_of<T>); }
-/// Most simulation nodes of a BV for the kernels in float, so that n·u ≤ 1/200 here and above.
+/// The kernels add in 8 virtual lanes, node j in lane j mod 8, and then in a tree: a term of n passes at most this many roundings.
+inline double sum_depth(std::size_t nodes) noexcept { return std::ceil(static_cast<double>(nodes) / 8) + 3; }
+
+/// The kernels' Σ l·a + Σ r·max(a, 0), a = fl(b̂ − λ), is off by at most factor·(width + fl Σ r·max(a, 0)) + underflow, width the computed
+/// max |a|: the greatest b̂ − λ and λ + the greatest b̂ against the axis bound it, as b̂₊ ≥ p ≥ −b̂₋ and rounding is monotonic. A
+/// term passes 1 (−) + m (sum) + 1 (+) roundings, Σ l ≤ 1, exact Σ r·max(a, 0) ≤ computed/(1 − γ_{m+1}) + nη:
+/// γ_{m+2}/(1 − γ_{m+1}) < (1.02m + 3)u for m·u ≤ 1/200; 5u are left for its own roundings.
+template <class T> inline T dual_sum_factor(std::size_t nodes) noexcept
+{
+    return static_cast<T>((1.02 * sum_depth(nodes) + 8) * static_cast<double>(unit_roundoff_of<T>));
+}
+template <class T> inline T dual_sum_underflow(std::size_t nodes) noexcept { return static_cast<T>(2 * nodes) * smallest_subnormal_of<T>; }
+/// Most simulation nodes of a BV for the kernels in float, so that m·u ≤ 1/200 here, and less than 1/100 above.
 inline constexpr std::size_t most_nodes_in_float = 65536;
 
-/// By how much a BV of the linear kind multiplies its nodes' errors. With κ = Σ_jΣ_i|g_ji| max|y_i| + Σ_j residual_j +
+/// By how much a BV of the linear kind multiplies its nodes' errors. With m = sum_depth, κ = Σ_jΣ_i|g_ji| max|y_i| + Σ_j residual_j +
 /// Σ_j max_i moment_ji/X_i, and |dq·x + dθ| ≤ 2.01 N:
-///   q̄ against Σ m q: (n + 1)u N; P = dq·z + dθ: 4 roundings, 9u N κ; the sums over the nodes of P·g, residual·|P| and
-///   moment·|dq| of n, n and 3n terms: (3n + 2)u·2.01 N κ; support of q̄ + ΣP g: 4 roundings on ≤ (3.03 + 4.02κ) N.
-/// Together ≤ ((n + 35) + κ(6.03n + 40))u N, in units of 48u N. [checked in exact arithmetic]
-inline double linear_error_factor(double nodes, double kappa) noexcept
+///   q̄ against Σ m q: (m + 1)u N; P = dq·z + dθ: 4 roundings, 9u N κ; the sums over the nodes of P·g, residual·|P| and
+///   moment·|dq|, the last with three terms a node: (3m + 2)u·2.01 N κ; support of q̄ + ΣP g: 4 roundings on ≤ (3.03 + 4.02κ) N.
+/// Together ≤ ((m + 35) + κ(6.03m + 40))u N, in units of 48u N. [checked in exact arithmetic]
+inline double linear_error_factor(std::size_t nodes, double kappa) noexcept
 {
-    return 1 + (nodes + kappa * (6.5 * nodes + 44)) / kernel_error_constant;
+    return 1 + (sum_depth(nodes) + kappa * (6.5 * sum_depth(nodes) + 44)) / kernel_error_constant;
 }
 
 } // namespace cinch

@@ -81,7 +81,7 @@ Trial calibrate(const Bvh& bvh, const DeformableSurface& surface, Method kind, s
     Trial best = attempt(packed, frames);
     if (kind == Method::linear)
         return best;
-    for (const double candidate : {0.3, 0.6, 0.8, 0.9, 1.0}) {
+    for (const double candidate : {0.3, 0.5, 0.7, 0.8, 0.85, 0.9, 0.95, 1.0}) {
         for (PackedBv<double>& bv : packed.bvs)
             bv.start = candidate;
         const Trial trial = attempt(packed, frames);

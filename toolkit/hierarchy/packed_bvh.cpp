@@ -64,6 +64,7 @@ public:
         bv_.first_node = static_cast<std::uint32_t>(out_.node.size());
         bv_.first_value = out_.value.size();
         out_.node.insert(out_.node.end(), rest.node.begin(), rest.node.end());
+        out_.node.resize(bv_.first_node + blocks_of(rest.node.size()) * block_lanes, rest.node.back());
         put_box(rest.box, out_.rest.origin, bv_.centre, bv_.half);
         if (kind == Method::support || kind == Method::linear)
             put_points(rest);
@@ -75,8 +76,6 @@ public:
     }
 
 private:
-    void put(double x) { out_.value.push_back(static_cast<T>(x)); }
-
     // x − o = pivot + y + an error that goes to the slack.
     void put_points(const RestBv& rest)
     {
@@ -87,51 +86,53 @@ private:
         }
         bv_.points = static_cast<std::uint32_t>(rest.point.size());
         Vec3 off = Vec3::Zero();
-        for (std::uint32_t v : rest.point)
+        Blocks blocks(*this, rest.point.size(), 3);
+        for (std::size_t i = 0; i < rest.point.size(); ++i)
             for (int s = 0; s < 3; ++s) {
-                const double o = out_.rest.origin[s], x = surface_.mesh.vertices[v][s] - o, y = x - static_cast<double>(bv_.pivot[s]);
-                put(y);
+                const double o = out_.rest.origin[s], x = surface_.mesh.vertices[rest.point[i]][s] - o, y = x - static_cast<double>(bv_.pivot[s]);
+                const T packed = static_cast<T>(y);
+                blocks.put(i, static_cast<std::size_t>(s), packed, packed);
                 const double rounding = unit_roundoff * (std::abs(y) + (o == 0 ? 0 : std::abs(x)));
-                off[s] = std::max(off[s], succ(std::abs(y - static_cast<double>(out_.value.back())) + succ(rounding)));
+                off[s] = std::max(off[s], succ(std::abs(y - static_cast<double>(packed)) + succ(rounding)));
             }
         // Σ|q_s| off_s ≤ ‖q‖ Σ off_s; the factor is for the rounding of ‖q‖ and of the product, 2 + 2 + 1/2 + 1 steps at most.
-        bv_.slack = up<T>(succ(succ(rest.slack + succ(succ(off[0] + off[1]) + off[2])) * (1 + 8 * unit_roundoff_of<T>)));
+        bv_.slack = up<T>(succ(succ(rest.slack + succ(succ(off[0] + off[1]) + off[2])) * (1 + 8 * static_cast<double>(unit_roundoff_of<T>))));
     }
 
     void put_intervals(const RestBv& rest)
     {
-        const auto means = rounded_means(rest);
+        const auto means = bv_.kind == Method::support ? rounded_means(rest) : std::vector<double>();
+        Blocks blocks(*this, rest.node.size(), PackedBv<T>::rows(bv_.kind));
         for (std::size_t j = 0; j < rest.node.size(); ++j) {
             const T l = down<T>(rest.space.l[j]), r = up<T>(rest.space.h[j] - static_cast<double>(l)); // dyadic: exact
-            put(l);
-            put(r);
+            blocks.put(j, 0, l, 0);
+            blocks.put(j, 1, r, 0);
             bv_.sum_l += l;
             bv_.sum_r += r;
             if (bv_.kind != Method::local && bv_.kind != Method::support)
                 continue;
             T box[6];
             put_box(rest.local[j], out_.rest.origin, box, box + 3);
-            out_.value.insert(out_.value.end(), box, box + 6);
-            if (bv_.kind == Method::support)
-                put(means[j]);
-            else
-                put_radius(rest.local[j], rest.radius[j]);
+            for (std::size_t s = 0; s < 6; ++s)
+                blocks.put(j, 2 + s, box[s], box[s]);
+            if (bv_.kind == Method::support) {
+                blocks.put(j, 8, static_cast<T>(means[j]), 0);
+            } else {
+                double radius = rest.radius[j]; // about the packed centre
+                for (int s = 0; s < 3; ++s)
+                    radius = sum_up(radius, shifted<T>(rest.local[j].centre[s], out_.rest.origin[s]).off);
+                // ν·radius is rounded once more.
+                const T packed = up<T>(radius == 0 ? 0 : succ(radius * (1 + 4 * static_cast<double>(unit_roundoff_of<T>))));
+                blocks.put(j, 8, packed, packed);
+            }
         }
-    }
-
-    // About the packed centre.
-    void put_radius(const RestBox& box, double radius)
-    {
-        double moved = 0;
-        for (int s = 0; s < 3; ++s)
-            moved = sum_up(moved, shifted<T>(box.centre[s], out_.rest.origin[s]).off);
-        out_.value.push_back(up<T>(sum_up(radius, moved)));
     }
 
     // Means become multiples of 2^-24 for float, still with sum 1; all that moves goes to residual and moment.
     void put_models(const RestBv& rest)
     {
         const auto means = rounded_means(rest);
+        Blocks blocks(*this, rest.node.size(), PackedBv<T>::rows(Method::linear));
         double kappa = 0;
         Vec3 reach; // of |y| about the pivot
         for (int s = 0; s < 3; ++s)
@@ -140,27 +141,48 @@ private:
             const WeightModel& model = rest.model[j];
             const double moved = std::abs(model.mean - means[j]); // dyadic: exact
             double residual = sum_up(model.residual, moved), moment_share = 0;
-            T gradient[3], moment[3];
+            blocks.put(j, 0, static_cast<T>(means[j]), 0);
             for (int s = 0; s < 3; ++s) {
-                gradient[s] = static_cast<T>(model.gradient[s]);
-                const double g = static_cast<double>(gradient[s]), change = std::abs(model.gradient[s] - g);
+                const T gradient = static_cast<T>(model.gradient[s]);
+                const double g = static_cast<double>(gradient), change = std::abs(model.gradient[s] - g);
                 residual = sum_up(residual, up_product(change, reach[s]));
                 residual = sum_up(residual, up_product(std::abs(g), pivot_off_[s]));
                 const double m = sum_up(sum_up(model.moment[s], pivot_off_[s]), up_product(moved, reach[s]));
-                moment[s] = up<T>(m);
                 kappa += std::abs(g) * reach[s];
                 const double about = std::abs(static_cast<double>(bv_.centre[s])) + static_cast<double>(bv_.half[s]);
                 if (m > 0)
                     moment_share = std::max(moment_share, m / about);
+                blocks.put(j, 1 + static_cast<std::size_t>(s), gradient, 0);
+                blocks.put(j, 5 + static_cast<std::size_t>(s), up<T>(m), 0);
             }
             kappa += residual + moment_share;
-            put(means[j]);
-            out_.value.insert(out_.value.end(), gradient, gradient + 3);
-            out_.value.push_back(up<T>(residual));
-            out_.value.insert(out_.value.end(), moment, moment + 3);
+            blocks.put(j, 4, up<T>(residual), 0);
         }
-        bv_.error_factor = up<T>(linear_error_factor(static_cast<double>(rest.node.size()), kappa * (1 + 0x1p-20)));
+        bv_.error_factor = up<T>(linear_error_factor(rest.node.size(), kappa * (1 + 0x1p-20)));
     }
+
+    // Room for `count` columns of `rows` values at the end of out_.value, in blocks of 8 columns.
+    class Blocks {
+    public:
+        Blocks(Packer& packer, std::size_t count, std::size_t rows)
+            : value_(packer.out_.value), first_(value_.size()), count_(count), rows_(rows)
+        {
+            value_.resize(first_ + blocks_of(count) * rows * block_lanes);
+        }
+        // The last column is repeated to fill its block, with `repeated` instead of the value.
+        void put(std::size_t column, std::size_t row, T value, T repeated)
+        {
+            T* const block = &value_[first_ + (column / block_lanes * rows_ + row) * block_lanes];
+            block[column % block_lanes] = value;
+            if (column + 1 == count_)
+                for (std::size_t i = column % block_lanes + 1; i < block_lanes; ++i)
+                    block[i] = repeated;
+        }
+
+    private:
+        AlignedVector<T>& value_;
+        std::size_t first_, count_, rows_;
+    };
 
     static double up_product(double a, double b) { return a == 0 || b == 0 ? 0 : succ(succ(a * b)); }
 

@@ -40,7 +40,7 @@ template <class T> struct KernelPart {
         : packed(pack<T>(bvh, surface, choose_kinds(bvh, surface, method))), bvs(bvh.bvs.size())
     {
         if (options.remember)
-            remembered.assign(packed.bvs.size() * 2 * lanes_of(options.kdop), std::numeric_limits<T>::quiet_NaN());
+            remembered.assign(packed.bvs.size() * static_cast<std::size_t>(options.kdop), std::numeric_limits<T>::quiet_NaN());
     }
 
     std::size_t bound(std::span<const AffineMap> frame, const RefitOptions& options, std::span<double> supports)

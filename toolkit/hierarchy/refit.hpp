@@ -17,7 +17,7 @@ struct RefitOptions {
     int kdop = 6;                   ///< 6, 14, 18 or 26
     Rounding rounding = Rounding::proven;
     Precision precision = Precision::float64; ///< of the methods that have kernels: all but sphere, corners and vertices
-    int passes = 2;                 ///< evaluations of D for local, support and best
+    int passes = 1;                 ///< evaluations of D for local, support and best
     bool remember = false;          ///< λ of local, support and best begins where the last frame left it
 };
 

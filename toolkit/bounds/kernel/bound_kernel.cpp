@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "toolkit/bounds/directions.hpp"
+#include "toolkit/bounds/kernel/choose_lambda.hpp"
 #include "toolkit/bounds/rounding.hpp"
 
 // Targets without fused multiply-add would have to emulate it at great cost; what is left is AVX2 and up, NEON, and portable
@@ -23,143 +24,183 @@
 HWY_BEFORE_NAMESPACE();
 namespace cinch::HWY_NAMESPACE {
 
-template <class T, std::size_t kLanes> struct Bound {
-    alignas(64) T value[2][kLanes], lambda[2][kLanes];
-    LaneMap<T, kLanes> reference;
+// One BV's bound on its way: value and λ along and against the axes, and the reference map.
+template <class T, std::size_t kAxes> struct Bound {
+    T value[2][kAxes], lambda[2][kAxes];
+    AxisMap<T, kAxes> reference;
+    T error; // the greatest of the BV's nodes
 };
 
-// The whole method: λ where the kind says, D there, and every such value intersected with the greatest b.
-template <class T, std::size_t kLanes>
-void bound_by_duality(const KernelInput<T>& in, const PackedBv<T>& bv, T* remembered, KernelScratch<T>& scratch, Bound<T, kLanes>& out)
+template <class T, std::size_t kAxes>
+void intersect(const KernelInput<T>& in, const PackedBv<T>& bv, const Extrema<T, kAxes>& e, const T (&lambda)[2][kAxes], const Dual<T, kAxes>& d, Bound<T, kAxes>& out)
 {
-    using L = Lanes<T, kLanes>;
+    const T factor = dual_sum_factor<T>(bv.count), underflow = dual_sum_underflow<T>(bv.count);
+    for (std::size_t s = 0; s < 2; ++s)
+        for (std::size_t a = 0; a < kAxes; ++a) {
+            const DualParts<T> parts{d.lower[s][a], d.upper[s][a], d.mass[s][a]};
+            const T value = in.rounding == Rounding::proven
+                                ? proven_dual_value(lambda[s][a], parts, e.greatest[s][a], e.greatest[1 - s][a], factor, underflow)
+                                : dual_value(lambda[s][a], parts);
+            if (value < out.value[s][a]) { // not if it is NaN
+                out.value[s][a] = value;
+                out.lambda[s][a] = lambda[s][a];
+            }
+        }
+}
+
+template <class T, std::size_t kAxes>
+void select_best(const PackedBv<T>& bv, const T* block, const T* b, std::vector<std::pair<T, T>>& scratch, T (&lambda)[2][kAxes])
+{
+    for (std::size_t s = 0; s < 2; ++s)
+        for (std::size_t a = 0; a < kAxes; ++a) {
+            scratch.clear();
+            for (std::size_t j = 0; j < bv.count; ++j) {
+                const std::size_t i = j / block_lanes, lane = j % block_lanes;
+                scratch.emplace_back(b[((i * kAxes + a) * 2 + s) * block_lanes + lane],
+                                     block[(i * PackedBv<T>::rows(bv.kind) + 1) * block_lanes + lane]);
+            }
+            lambda[s][a] = best_lambda<T>(scratch, 1 - bv.sum_l);
+        }
+}
+
+// λ near the best one by at most in.passes evaluations of D.
+template <class T, std::size_t kAxes>
+void search(const KernelInput<T>& in, const PackedBv<T>& bv, const T* block, const T* b, const Extrema<T, kAxes>& e, T* remembered, Bound<T, kAxes>& out)
+{
+    constexpr std::size_t rows = PackedBv<T>::rows(Method::local);
+    T lambda[2][kAxes];
+    for (std::size_t s = 0; s < 2; ++s)
+        for (std::size_t a = 0; a < kAxes; ++a) {
+            lambda[s][a] = e.mean[s][a] + bv.start * (e.greatest[s][a] - e.mean[s][a]);
+            if (remembered && std::isfinite(remembered[s * kAxes + a]))
+                lambda[s][a] = remembered[s * kAxes + a];
+        }
+    Dual<T, kAxes> d;
+    if (in.passes == 1 && !remembered) {
+        dual<T, kAxes, false>(bv, block, rows, b, lambda, d);
+        return intersect<T, kAxes>(in, bv, e, lambda, d, out);
+    }
+    std::optional<TangentSearch<T>> tangents[2][kAxes];
+    for (int pass = 0; pass < in.passes; ++pass) {
+        dual<T, kAxes, true>(bv, block, rows, b, lambda, d);
+        intersect<T, kAxes>(in, bv, e, lambda, d, out);
+        for (std::size_t s = 0; s < 2; ++s)
+            for (std::size_t a = 0; a < kAxes; ++a) {
+                const DualParts<T> parts{d.lower[s][a], d.upper[s][a], d.mass[s][a]};
+                if (pass == 0)
+                    tangents[s][a].emplace(lambda[s][a], parts, bv.sum_l, bv.sum_r, e.mean[s][a]);
+                lambda[s][a] = tangents[s][a]->next(lambda[s][a], parts, bv.sum_l);
+            }
+    }
+    if (remembered)
+        std::copy_n(&lambda[0][0], 2 * kAxes, remembered);
+}
+
+// The whole method: λ where the kind says, D there, and every such value intersected with the greatest b.
+template <class T, std::size_t kAxes>
+void bound_by_duality(const KernelInput<T>& in, const PackedBv<T>& bv, T* remembered, KernelScratch<T>& scratch, Bound<T, kAxes>& out)
+{
     const std::uint32_t* node = in.node.data() + bv.first_node;
     const T* point = in.value.data() + bv.first_value;
-    const T* record = point + 3 * bv.points;
-    const std::size_t size = PackedBv<T>::record(bv.kind);
-    if (scratch.b.size() < 2 * kLanes * bv.count)
-        scratch.b.resize(2 * kLanes * bv.count);
+    const T* block = point + 3 * block_lanes * blocks_of(bv.points);
+    const std::size_t rows = PackedBv<T>::rows(bv.kind);
     T* b = scratch.b.data();
 
-    Extrema<T, kLanes> e;
+    Extrema<T, kAxes> e;
     switch (bv.kind) {
     case Method::support:
-        mean_map<T, kLanes>(*in.maps, node, record, size, 8, bv.count, out.reference);
-        extrema<T, kLanes, true, true, false>(bv, *in.maps, node, record, out.reference, b, e);
+        mean_map<T, kAxes>(bv, *in.maps, node, block, rows, 8, scratch.transposed.data(), out.reference, out.error);
+        e.error = out.error;
+        extrema<T, kAxes, Boxes::less_reference, false>(bv, *in.maps, node, block, out.reference, scratch.transposed.data(), b, e);
         break;
-    case Method::local: extrema<T, kLanes, true, false, false>(bv, *in.maps, node, record, out.reference, b, e); break;
-    default: extrema<T, kLanes, false, false, true>(bv, *in.maps, node, record, out.reference, b, e); break;
+    case Method::local: extrema<T, kAxes, Boxes::local, false>(bv, *in.maps, node, block, out.reference, nullptr, b, e); break;
+    default: extrema<T, kAxes, Boxes::common, true>(bv, *in.maps, node, block, out.reference, nullptr, b, e); break;
     }
-    std::copy_n(&e.greatest[0][0], 2 * kLanes, &out.value[0][0]);
-    std::copy_n(&e.greatest[0][0], 2 * kLanes, &out.lambda[0][0]);
+    out.error = e.error;
+    std::copy_n(&e.greatest[0][0], 2 * kAxes, &out.value[0][0]);
+    std::copy_n(&e.greatest[0][0], 2 * kAxes, &out.lambda[0][0]);
 
-    alignas(64) T lambda[2][kLanes];
-    Dual<T, kLanes> d;
+    Dual<T, kAxes> d;
     if (bv.kind == Method::eq12 || bv.kind == Method::limited) {
-        std::copy_n(&e.second[0][0], 2 * kLanes, &lambda[0][0]);
-        dual<T, kLanes, false>(bv, record, size, b, lambda, d);
-        intersect<T, kLanes>(bv, e, lambda, d, in.rounding, out.value, out.lambda);
+        dual<T, kAxes, false>(bv, block, rows, b, e.second, d);
+        intersect<T, kAxes>(in, bv, e, e.second, d, out);
     }
     if (bv.kind == Method::limited) {
-        select_best<T, kLanes>(bv, record, size, b, scratch.select, lambda);
-        dual<T, kLanes, false>(bv, record, size, b, lambda, d);
-        intersect<T, kLanes>(bv, e, lambda, d, in.rounding, out.value, out.lambda);
+        T lambda[2][kAxes];
+        select_best<T, kAxes>(bv, block, b, scratch.select, lambda);
+        dual<T, kAxes, false>(bv, block, rows, b, lambda, d);
+        intersect<T, kAxes>(in, bv, e, lambda, d, out);
     }
-    if (bv.kind == Method::local || bv.kind == Method::support) {
-        for (std::size_t s = 0; s < 2; ++s)
-            for (std::size_t i = 0; i < L::vectors; ++i) {
-                const auto mean = L::load(e.mean[s], i);
-                L::store(L::fma(L::all(bv.start), hn::Sub(L::load(e.greatest[s], i), mean), mean), lambda[s], i);
-            }
-        if (remembered)
-            for (std::size_t i = 0; i < 2 * kLanes; ++i)
-                if (remembered[i] - remembered[i] == 0) // finite
-                    (&lambda[0][0])[i] = remembered[i];
-        Bracket<T, kLanes> bracket;
-        for (int pass = 0; pass < in.passes; ++pass) {
-            const bool last = pass + 1 == in.passes && !remembered;
-            if (last)
-                dual<T, kLanes, false>(bv, record, size, b, lambda, d);
-            else
-                dual<T, kLanes, true>(bv, record, size, b, lambda, d);
-            intersect<T, kLanes>(bv, e, lambda, d, in.rounding, out.value, out.lambda);
-            if (!last)
-                step<T, kLanes>(bv, e, d, pass == 0, bracket, lambda);
-        }
-        if (remembered)
-            std::copy_n(&lambda[0][0], 2 * kLanes, remembered);
-    }
-    if (bv.kind == Method::support) {
-        alignas(64) T rest[2][kLanes];
-        rest_support<T, kLanes>(bv, point, out.reference, out.reference, rest[0], rest[1]);
-        for (std::size_t s = 0; s < 2; ++s)
-            for (std::size_t i = 0; i < L::vectors; ++i) {
-                const auto sum = hn::Add(L::load(out.value[s], i), L::load(rest[s], i));
-                L::store(in.rounding == Rounding::proven ? L::up(sum) : sum, out.value[s], i);
-            }
-    }
+    if (bv.kind == Method::local || bv.kind == Method::support)
+        search<T, kAxes>(in, bv, block, b, e, remembered, out);
+    if (bv.kind == Method::support)
+        add_rest_support<T, kAxes>(bv, point, out.reference, out.reference, in.rounding, out.value);
 }
 
 // Back from T about the body's origin to supports in the world, with the errors of the BV's nodes on top.
-template <class T, std::size_t kLanes>
-void finish(const KernelInput<T>& in, const PackedBv<T>& bv, const T (&value)[2][kLanes], double* supports)
+template <class T, std::size_t kAxes>
+void finish(const KernelInput<T>& in, const PackedBv<T>& bv, const Bound<T, kAxes>& bound, double* supports)
 {
-    const std::uint32_t* node = in.node.data() + bv.first_node;
-    T error = 0;
-    for (std::size_t j = 0; j < bv.count; ++j) {
-        const T charge = in.maps->of(node[j])[4 * kLanes - 1];
-        error = charge > error ? charge : error;
-    }
     const bool proven = in.rounding == Rounding::proven;
-    const double widening = proven ? succ(static_cast<double>(error) * static_cast<double>(bv.error_factor)) : static_cast<double>(error);
+    const double error = static_cast<double>(bound.error);
+    const double widening = proven ? succ(error * static_cast<double>(bv.error_factor)) : error;
+    const Vec3& origin = in.maps->origin;
+    const bool at_home = origin[0] == 0 && origin[1] == 0 && origin[2] == 0;
     const auto axes = axes_of(in.maps->kdop);
-    for (std::size_t a = 0; a < axes.size(); ++a)
+    for (std::size_t a = 0; a < kAxes; ++a)
         for (std::size_t s = 0; s < 2; ++s) {
-            double sum = static_cast<double>(value[s][a]) + widening;
+            double sum = static_cast<double>(bound.value[s][a]) + widening;
             sum = proven ? succ(sum) : sum;
-            for (std::size_t r = 0; r < 3; ++r)
-                if (axes[a][r] != 0 && in.maps->origin[static_cast<int>(r)] != 0) {
-                    sum += ((axes[a][r] > 0) == (s == 0) ? 1 : -1) * in.maps->origin[static_cast<int>(r)];
+            for (std::size_t r = 0; r < 3 && !at_home; ++r)
+                if (axes[a][r] != 0) {
+                    sum += ((axes[a][r] > 0) == (s == 0) ? 1 : -1) * origin[static_cast<int>(r)];
                     sum = proven ? succ(sum) : sum;
                 }
             supports[2 * a + s] = sum < infinite ? sum : infinite;
         }
 }
 
-template <class T, std::size_t kLanes>
-void bound_one(const KernelInput<T>& in, std::size_t i, KernelScratch<T>& scratch, Bound<T, kLanes>& bound, double* supports)
+template <class T, std::size_t kAxes>
+void bound_one(const KernelInput<T>& in, std::size_t i, KernelScratch<T>& scratch, Bound<T, kAxes>& bound, double* supports)
 {
     const PackedBv<T>& bv = in.bvs[i];
-    const T* point = in.value.data() + bv.first_value;
-    if (bv.kind == Method::linear)
-        linear<T, kLanes>(bv, *in.maps, in.node.data() + bv.first_node, point, point + 3 * bv.points, in.rounding, bound.reference, bound.value);
-    else
-        bound_by_duality<T, kLanes>(in, bv, in.remembered ? in.remembered + i * 2 * kLanes : nullptr, scratch, bound);
-    finish<T, kLanes>(in, bv, bound.value, supports);
+    const std::size_t lanes = kAxes * block_lanes * blocks_of(bv.count);
+    if (scratch.b.size() < 2 * lanes)
+        scratch.b.resize(2 * lanes);
+    if ((bv.kind == Method::support || bv.kind == Method::linear) && scratch.transposed.size() < 4 * lanes)
+        scratch.transposed.resize(4 * lanes);
+    if (bv.kind == Method::linear) {
+        const T* point = in.value.data() + bv.first_value;
+        linear<T, kAxes>(bv, *in.maps, in.node.data() + bv.first_node, point, point + 3 * block_lanes * blocks_of(bv.points), in.rounding,
+                         scratch.transposed.data(), bound.reference, bound.value, bound.error);
+    } else {
+        bound_by_duality<T, kAxes>(in, bv, in.remembered ? in.remembered + i * 2 * kAxes : nullptr, scratch, bound);
+    }
+    finish<T, kAxes>(in, bv, bound, supports);
 }
 
-template <class T, std::size_t kLanes>
-void bound_lanes(const KernelInput<T>& in, std::size_t first, std::size_t last, KernelScratch<T>& scratch, double* supports, KernelTrace<T>* trace)
+template <class T, std::size_t kAxes>
+void bound_range(const KernelInput<T>& in, std::size_t first, std::size_t last, KernelScratch<T>& scratch, double* supports, KernelTrace<T>* trace)
 {
-    const auto k = static_cast<std::size_t>(in.maps->kdop);
-    for (std::size_t i = first; i < last; ++i, supports += k) {
+    for (std::size_t i = first; i < last; ++i, supports += 2 * kAxes) {
         const PackedBv<T>& bv = in.bvs[i];
-        Bound<T, kLanes> bound;
-        bound_one<T, kLanes>(in, i, scratch, bound, supports);
-        if (bv.also) {
-            Bound<T, kLanes> second;
-            double other[2 * kLanes];
-            bound_one<T, kLanes>(in, bv.also, scratch, second, other);
-            for (std::size_t d = 0; d < k; ++d)
-                supports[d] = std::min(supports[d], other[d]);
-        }
+        Bound<T, kAxes> bound;
+        bound_one<T, kAxes>(in, i, scratch, bound, supports);
         if (trace) {
             *trace = {};
-            for (std::size_t s = 0; s < 2 && bv.kind != Method::linear; ++s)
-                std::copy_n(bound.lambda[s], kLanes, trace->lambda[s]);
-            for (std::size_t s = 0; s < 4 && (bv.kind == Method::linear || bv.kind == Method::support); ++s)
-                std::copy_n(bound.reference.row[s], kLanes, trace->reference[s]);
+            for (std::size_t a = 0; a < kAxes; ++a) {
+                for (std::size_t s = 0; s < 2 && bv.kind != Method::linear; ++s)
+                    trace->lambda[s][a] = bound.lambda[s][a];
+                if (bv.kind == Method::linear || bv.kind == Method::support)
+                    std::copy_n(bound.reference.of[a], 4, trace->reference[a]);
+            }
             ++trace;
+        }
+        if (bv.also) {
+            double other[2 * kAxes];
+            bound_one<T, kAxes>(in, bv.also, scratch, bound, other);
+            for (std::size_t d = 0; d < 2 * kAxes; ++d)
+                supports[d] = std::min(supports[d], other[d]);
         }
     }
 }
@@ -167,11 +208,11 @@ void bound_lanes(const KernelInput<T>& in, std::size_t first, std::size_t last, 
 template <class T>
 void bound_any(const KernelInput<T>& in, std::size_t first, std::size_t last, KernelScratch<T>& scratch, double* supports, KernelTrace<T>* trace)
 {
-    switch (lanes_of(in.maps->kdop)) {
-    case 4: return bound_lanes<T, 4>(in, first, last, scratch, supports, trace);
-    case 8: return bound_lanes<T, 8>(in, first, last, scratch, supports, trace);
-    case 12: return bound_lanes<T, 12>(in, first, last, scratch, supports, trace);
-    default: return bound_lanes<T, 16>(in, first, last, scratch, supports, trace);
+    switch (in.maps->kdop) {
+    case 6: return bound_range<T, 3>(in, first, last, scratch, supports, trace);
+    case 14: return bound_range<T, 7>(in, first, last, scratch, supports, trace);
+    case 18: return bound_range<T, 9>(in, first, last, scratch, supports, trace);
+    default: return bound_range<T, 13>(in, first, last, scratch, supports, trace);
     }
 }
 
@@ -190,12 +231,9 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace cinch {
-namespace {
 
 HWY_EXPORT(bound_float);
 HWY_EXPORT(bound_double);
-
-} // namespace
 
 template <>
 void bound_packed(const KernelInput<float>& input, std::size_t first, std::size_t last, KernelScratch<float>& scratch, std::span<double> supports, KernelTrace<float>* trace)

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <span>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -19,23 +22,23 @@ template <class T> struct KernelInput {
     const ProjectedMaps<T>* maps;
     Rounding rounding = Rounding::proven;
     int passes = 1;      ///< evaluations of D for local and support; 0 leaves them at the greatest b
-    T* remembered = nullptr; ///< 2·lanes λ per entry of bvs, NaN at first: where λ begins instead, and the next better λ; or null
+    T* remembered = nullptr; ///< k λ per entry of bvs, NaN at first: where λ begins instead, and the next better λ; or null
 };
 
 /// Reused from call to call, so that bounding allocates nothing once warm.
 template <class T> struct KernelScratch {
-    AlignedVector<T> b; ///< per simulation node `lanes` extrema along the axes, then `lanes` against them
+    AlignedVector<T> b, transposed;
     std::vector<std::pair<T, T>> select;
 };
 
-/// How a bound came about (the first of two): λ per lane along and against the axes, and the reference map (4 × lanes, zero for kinds without).
+/// How a bound came about (the first of two): λ along and against the axes, and the reference map q̄, θ̄ (zero for kinds without).
 template <class T> struct KernelTrace {
-    T lambda[2][16], reference[4][16];
+    T lambda[2][13], reference[13][4];
 };
 
 /// Bounds BVs [first, last): supports[(bv − first)·k + d], d as in axes_of(k). With Rounding::proven each is an upper bound for every
 /// exactly deformed and every computed vertex. Whatever is not finite gives +∞. The arithmetic is IEEE with every operation
-/// and its order fixed, one lane per axis and simulation nodes in the order given: the same bits on every target.
+/// and its order fixed: simulation nodes in 8 virtual lanes, fused multiply-adds included. The same bits on every target.
 /// `trace`, if given, has one entry per BV.
 template <class T>
 void bound_packed(const KernelInput<T>& input, std::size_t first, std::size_t last, KernelScratch<T>& scratch, std::span<double> supports,

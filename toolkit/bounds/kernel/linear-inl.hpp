@@ -16,45 +16,38 @@ namespace cinch::HWY_NAMESPACE {
 ///   γ·v = q̄·x + θ̄ + Σ_j (w_j − m_j)((q_j − q̄)·x + θ_j − θ̄)
 ///       = q̄·z + θ̄ + (q̄ + Σ_j P_j g_j)·y + Σ_j ρ_j P_j + Σ_j (w_j − m_j)(q_j − q̄)·y,   P_j = (q_j − q̄)·z + θ_j − θ̄,
 /// so rest support of q̄ + Σ P_j g_j, then |ρ_j| ≤ residual_j and |(w_j − m_j) y| ≤ moment_j.
-template <class T, std::size_t kLanes>
-void linear(const PackedBv<T>& bv, const ProjectedMaps<T>& maps, const std::uint32_t* node, const T* point, const T* record, Rounding rounding,
-            LaneMap<T, kLanes>& mean, T (&bound)[2][kLanes])
+template <class T, std::size_t kAxes>
+void linear(const PackedBv<T>& bv, const ProjectedMaps<T>& maps, const std::uint32_t* node, const T* point, const T* block, Rounding rounding, T* transposed,
+            AxisMap<T, kAxes>& mean, T (&bound)[2][kAxes], T& error)
 {
-    using L = Lanes<T, kLanes>;
-    using V = typename L::V;
-    constexpr std::size_t size = PackedBv<T>::record(Method::linear);
-    mean_map<T, kLanes>(maps, node, record, size, 0, bv.count, mean);
-    V direction[3][L::vectors], residual[L::vectors], moment[L::vectors];
-    for (std::size_t i = 0; i < L::vectors; ++i) {
-        for (std::size_t s = 0; s < 3; ++s)
-            direction[s][i] = L::all(0);
-        residual[i] = moment[i] = L::all(0);
-    }
-    for (std::size_t j = 0; j < bv.count; ++j, record += size) {
-        const T* q = maps.of(node[j]);
-        for (std::size_t i = 0; i < L::vectors; ++i) {
-            V dq[4];
+    constexpr std::size_t rows = PackedBv<T>::rows(Method::linear);
+    mean_map<T, kAxes>(bv, maps, node, block, rows, 0, transposed, mean, error);
+    Lanes<T> direction[kAxes][3], residual[kAxes], moment[kAxes];
+    for (std::size_t a = 0; a < kAxes; ++a)
+        direction[a][0] = direction[a][1] = direction[a][2] = residual[a] = moment[a] = Lanes<T>::all(0);
+    const auto z0 = Lanes<T>::all(bv.pivot[0]), z1 = Lanes<T>::all(bv.pivot[1]), z2 = Lanes<T>::all(bv.pivot[2]);
+    for (std::size_t i = 0; i < blocks_of(bv.count); ++i, block += rows * block_lanes) {
+        auto row = [&](std::size_t r) { return Lanes<T>::load(block + r * block_lanes); };
+        for (std::size_t a = 0; a < kAxes; ++a, transposed += 4 * block_lanes) {
+            Lanes<T> dq[4];
             for (std::size_t s = 0; s < 4; ++s)
-                dq[s] = hn::Sub(L::load(q + s * kLanes, i), L::load(mean.row[s], i));
-            const V p = L::fma(dq[0], L::all(bv.pivot[0]), L::fma(dq[1], L::all(bv.pivot[1]), L::fma(dq[2], L::all(bv.pivot[2]), dq[3])));
+                dq[s] = Lanes<T>::load(transposed + s * block_lanes) - Lanes<T>::all(mean.of[a][s]);
+            const auto p = fma(dq[0], z0, fma(dq[1], z1, fma(dq[2], z2, dq[3])));
             for (std::size_t s = 0; s < 3; ++s) {
-                direction[s][i] = L::fma(p, L::all(record[1 + s]), direction[s][i]);
-                moment[i] = L::fma(hn::Abs(dq[s]), L::all(record[5 + s]), moment[i]);
+                direction[a][s] = fma(p, row(1 + s), direction[a][s]);
+                moment[a] = fma(magnitude(dq[s]), row(5 + s), moment[a]);
             }
-            residual[i] = L::fma(hn::Abs(p), L::all(record[4]), residual[i]);
+            residual[a] = fma(magnitude(p), row(4), residual[a]);
         }
     }
-    LaneMap<T, kLanes> whole;
-    for (std::size_t s = 0; s < 3; ++s)
-        for (std::size_t i = 0; i < L::vectors; ++i)
-            L::store(hn::Add(direction[s][i], L::load(mean.row[s], i)), whole.row[s], i);
-    rest_support<T, kLanes>(bv, point, mean, whole, bound[0], bound[1]);
-    for (std::size_t s = 0; s < 2; ++s)
-        for (std::size_t i = 0; i < L::vectors; ++i) {
-            const V support = L::load(bound[s], i);
-            L::store(rounding == Rounding::proven ? L::up(hn::Add(support, L::up(hn::Add(residual[i], moment[i])))) : hn::Add(support, hn::Add(residual[i], moment[i])),
-                     bound[s], i);
-        }
+    AxisMap<T, kAxes> whole;
+    for (std::size_t a = 0; a < kAxes; ++a) {
+        for (std::size_t s = 0; s < 3; ++s)
+            whole.of[a][s] = sum(direction[a][s]) + mean.of[a][s];
+        const T rest = sum(residual[a]) + sum(moment[a]);
+        bound[0][a] = bound[1][a] = rounding == Rounding::proven ? succ(rest) : rest;
+    }
+    add_rest_support<T, kAxes>(bv, point, mean, whole, rounding, bound);
 }
 
 } // namespace cinch::HWY_NAMESPACE

@@ -8,59 +8,72 @@
 #endif
 
 #include "toolkit/bounds/kernel/lanes-inl.hpp"
-#include "toolkit/bounds/packed_bv.hpp"
-#include "toolkit/bounds/projected_maps.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace cinch::HWY_NAMESPACE {
 
-/// A map along every axis: q_s in rows 0 to 2, θ in row 3.
-template <class T, std::size_t kLanes> struct LaneMap {
-    alignas(64) T row[4][kLanes];
+/// A map along every axis: q in places 0 to 2, θ in place 3.
+template <class T, std::size_t kAxes> struct AxisMap {
+    T of[kAxes][4];
 };
 
-/// Σ_j m_j (q_j, θ_j), m_j at place `mean` of the j-th record.
-template <class T, std::size_t kLanes>
-void mean_map(const ProjectedMaps<T>& maps, const std::uint32_t* node, const T* record, std::size_t record_size, std::size_t mean,
-              std::size_t count, LaneMap<T, kLanes>& out)
+/// Σ_j m_j (q_j, θ_j), m in row `mean_row` of a block of `rows` rows. Leaves all q and θ in `transposed`, per block and axis 4 rows of 8, and
+/// the nodes' greatest error in `error`.
+template <class T, std::size_t kAxes>
+void mean_map(const PackedBv<T>& bv, const ProjectedMaps<T>& maps, const std::uint32_t* node, const T* block, std::size_t rows, std::size_t mean_row,
+              T* transposed, AxisMap<T, kAxes>& out, T& error)
 {
-    using L = Lanes<T, kLanes>;
-    typename L::V sum[4][L::vectors];
-    for (auto& row : sum)
-        for (auto& v : row)
-            v = L::all(0);
-    for (std::size_t j = 0; j < count; ++j) {
-        const T* q = maps.of(node[j]);
-        const auto m = L::all(record[j * record_size + mean]);
-        for (std::size_t s = 0; s < 4; ++s)
-            for (std::size_t i = 0; i < L::vectors; ++i)
-                sum[s][i] = L::fma(m, L::load(q + s * kLanes, i), sum[s][i]);
+    Lanes<T> total[kAxes][4], most = Lanes<T>::all(0);
+    for (auto& axis : total)
+        for (auto& x : axis)
+            x = Lanes<T>::all(0);
+    for (std::size_t i = 0; i < blocks_of(bv.count); ++i, node += block_lanes, block += rows * block_lanes) {
+        const auto m = Lanes<T>::load(block + mean_row * block_lanes);
+        with_maps<kAxes>(maps, node, [&](const auto& map) CINCH_FLATTEN {
+            most = greater(map.errors(), most);
+#pragma GCC unroll 3
+            for (std::size_t a = 0; a < kAxes; ++a) {
+                Lanes<T> q[4];
+                map.rows(4 * a, q);
+                for (std::size_t s = 0; s < 4; ++s, transposed += block_lanes) {
+                    q[s].store(transposed);
+                    total[a][s] = fma(m, q[s], total[a][s]);
+                }
+            }
+        });
     }
-    for (std::size_t s = 0; s < 4; ++s)
-        for (std::size_t i = 0; i < L::vectors; ++i)
-            L::store(sum[s][i], out.row[s], i);
+    for (std::size_t a = 0; a < kAxes; ++a)
+        for (std::size_t s = 0; s < 4; ++s)
+            out.of[a][s] = sum(total[a][s]);
+    error = greatest(most);
 }
 
-/// Upper bounds of ±(q·x + θ) over pivot + hull of the points ± slack, for direction q of `direction` and base map q̄, θ̄ of `base`:
-/// ±(q̄·pivot + θ̄) + max ±q·y + slack·‖q‖.
-template <class T, std::size_t kLanes>
-void rest_support(const PackedBv<T>& bv, const T* point, const LaneMap<T, kLanes>& base, const LaneMap<T, kLanes>& direction, T (&plus)[kLanes], T (&minus)[kLanes])
+/// Adds to `value`, along and against each axis, max q·(x − pivot) over the rest vertices x, q of `direction`, and q̄·pivot + θ̄ of
+/// `base`: the points' greatest q·y + slack·‖q‖.
+template <class T, std::size_t kAxes>
+void add_rest_support(const PackedBv<T>& bv, const T* point, const AxisMap<T, kAxes>& base, const AxisMap<T, kAxes>& direction, Rounding rounding,
+                      T (&value)[2][kAxes])
 {
-    using L = Lanes<T, kLanes>;
-    for (std::size_t i = 0; i < L::vectors; ++i) {
-        const auto q0 = L::load(direction.row[0], i), q1 = L::load(direction.row[1], i), q2 = L::load(direction.row[2], i);
-        auto most = L::all(-std::numeric_limits<T>::infinity()), least = L::all(std::numeric_limits<T>::infinity());
-        for (std::size_t p = 0; p < bv.points; ++p) {
-            const T* y = point + 3 * p;
-            const auto along = L::fma(q0, L::all(y[0]), L::fma(q1, L::all(y[1]), hn::Mul(q2, L::all(y[2]))));
-            most = L::greater(along, most);
-            least = L::less(along, least);
+    for (std::size_t a = 0; a < kAxes; ++a) {
+        const T(&q)[4] = direction.of[a];
+        const auto q0 = Lanes<T>::all(q[0]), q1 = Lanes<T>::all(q[1]), q2 = Lanes<T>::all(q[2]);
+        auto most = Lanes<T>::all(-infinity_of<T>), least_negated = most;
+        for (std::size_t i = 0; i < blocks_of(bv.points); ++i) {
+            const T* y = point + 3 * block_lanes * i;
+            const auto along = fma(q0, Lanes<T>::load(y), fma(q1, Lanes<T>::load(y + block_lanes), q2 * Lanes<T>::load(y + 2 * block_lanes)));
+            most = greater(along, most);
+            least_negated = greater(Lanes<T>::all(0) - along, least_negated);
         }
-        const auto slack = hn::Mul(hn::Sqrt(L::fma(q0, q0, L::fma(q1, q1, hn::Mul(q2, q2)))), L::all(bv.slack));
-        const auto at_pivot = L::fma(L::load(base.row[0], i), L::all(bv.pivot[0]),
-                                     L::fma(L::load(base.row[1], i), L::all(bv.pivot[1]), L::fma(L::load(base.row[2], i), L::all(bv.pivot[2]), L::load(base.row[3], i))));
-        L::store(L::up(hn::Add(L::up(hn::Add(most, slack)), at_pivot)), plus, i);
-        L::store(L::up(hn::Sub(L::up(hn::Sub(slack, least)), at_pivot)), minus, i);
+        const T slack = std::sqrt(std::fma(q[0], q[0], std::fma(q[1], q[1], q[2] * q[2]))) * bv.slack;
+        const T(&b)[4] = base.of[a];
+        const T at_pivot = std::fma(b[0], bv.pivot[0], std::fma(b[1], bv.pivot[1], std::fma(b[2], bv.pivot[2], b[3])));
+        const T height[2] = {greatest(most), greatest(least_negated)}, position[2] = {at_pivot, -at_pivot};
+        for (std::size_t s = 0; s < 2; ++s) {
+            if (rounding == Rounding::proven)
+                value[s][a] = succ(value[s][a] + succ(succ(height[s] + slack) + position[s]));
+            else
+                value[s][a] += (height[s] + slack) + position[s];
+        }
     }
 }
 
