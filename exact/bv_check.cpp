@@ -30,11 +30,11 @@ void BvCheck::check(std::size_t bv, std::span<const std::uint32_t> vertices, std
         if (rest_.node[j] < place_.size()) // else rest_data is set
             place_[rest_.node[j]] = j;
     const std::size_t first = bv * 2 * frame_.axes.size();
-    const bool has_weight_space = frame_.method != Method::vertices && !(out.failed[first] & rest_data);
+    const bool rest_holds = frame_.methods != Method::vertices && !(out.failed[first] & rest_data);
     BvReport& report = out.bvs[bv];
     double true_half[3] = {0, 0, 0}, bound_half[3] = {0, 0, 0};
     for (axis_ = 0; axis_ < frame_.axes.size(); ++axis_) {
-        if (has_weight_space && box_is_finite_)
+        if (rest_holds && box_is_finite_)
             enclose_extrema();
         double true_width = 0, bound_width = 0;
         for (const bool against : {false, true}) {
@@ -42,7 +42,7 @@ void BvCheck::check(std::size_t bv, std::span<const std::uint32_t> vertices, std
             slot_ = first + 2 * axis_ + against;
             bound_ = supports[2 * axis_ + against];
             const Interval support = true_support();
-            check_direction(support, has_weight_space, report.loss);
+            check_direction(support, rest_holds, report.loss);
             true_width += 0.5 * middle(support);
             bound_width += 0.5 * bound_;
         }
@@ -55,8 +55,9 @@ void BvCheck::check(std::size_t bv, std::span<const std::uint32_t> vertices, std
     report.bound_radius = std::hypot(bound_half[0], bound_half[1], bound_half[2]);
 }
 
-void BvCheck::check_direction(const Interval& support, bool has_weight_space, Loss& loss)
+void BvCheck::check_direction(const Interval& support, bool rest_holds, Loss& loss)
 {
+    const bool has_weight_space = rest_holds && weight_space_;
     if (!(bound_ > -infinity)) { // NaN proves nothing
         for (const Statement statement : {exact_vertices, computed_vertices, weight_space})
             if (statement != weight_space || has_weight_space)
@@ -72,9 +73,13 @@ void BvCheck::check_direction(const Interval& support, bool has_weight_space, Lo
     check_computed_vertices();
     if (has_weight_space)
         check_weight_space();
+    else if (rest_holds && box_is_finite_)
+        optimum_ = dual_value(rest_.space, extrema(), Interval(greedy_lambda()));
     block_->decided_by_filter += !exact_used_;
-    if (box_is_finite_ || !has_weight_space)
-        attribute(support, has_weight_space, loss);
+    if (!rest_holds)
+        loss.rounding += scale() * (bound_ - middle(support));
+    else if (box_is_finite_)
+        attribute(support, loss);
 }
 
 void BvCheck::fail(Statement statement, std::string detail)
@@ -87,11 +92,46 @@ void BvCheck::enclose_extrema()
 {
     plus_.clear();
     minus_.clear();
+    if (!boxes_)
+        return own_extrema(plus_, minus_);
     for (std::uint32_t node : rest_.node) {
         const auto both = extremum<Interval>(rest_.box.centre, rest_.box.half, frame_.maps[node], axis());
         plus_.push_back(both.plus);
         minus_.push_back(both.minus);
     }
+}
+
+// Of each simulation node over the vertices that it influences.
+template <class N> void BvCheck::own_extrema(std::vector<N>& plus, std::vector<N>& minus) const
+{
+    std::vector<Column<N>> column;
+    for (std::uint32_t node : rest_.node)
+        column.push_back(column_of<N>(frame_.maps[node], axis()));
+    plus.assign(rest_.node.size(), N(0));
+    minus.assign(rest_.node.size(), N(0));
+    std::vector<bool> seen(rest_.node.size(), false);
+    for (std::uint32_t k : vertices_)
+        for (std::uint32_t node : frame_.surface.weights.of(k).node) {
+            const std::size_t j = place_[node];
+            const N image = image_along(column[j], frame_.surface.mesh.vertices[k]);
+            plus[j] = seen[j] ? maximum(plus[j], image) : image;
+            minus[j] = seen[j] ? maximum(minus[j], -image) : -image;
+            seen[j] = true;
+        }
+}
+
+std::vector<Exact> BvCheck::exact_extrema() const
+{
+    std::vector<Exact> plus, minus;
+    if (boxes_)
+        for (std::uint32_t node : rest_.node) {
+            const auto both = extremum<Exact>(rest_.box.centre, rest_.box.half, frame_.maps[node], axis());
+            plus.push_back(both.plus);
+            minus.push_back(both.minus);
+        }
+    else
+        own_extrema(plus, minus);
+    return against_ ? minus : plus;
 }
 
 Interval BvCheck::true_support() const
@@ -142,19 +182,16 @@ void BvCheck::check_weight_space()
     // Any λ gives a certificate; a greedy fill of the enclosures' middles finds one without a gap, or nearly.
     const double lambda = greedy_lambda();
     optimum_ = dual_value(rest_.space, extrema(), Interval(lambda));
-    out_->lambda[slot_] = lambda;
+    if (boxes_)
+        out_->lambda[slot_] = lambda;
     if (optimum_.sup() <= bound_)
         return;
     exact_used_ = true;
-    std::vector<Exact> b;
-    for (std::uint32_t node : rest_.node) {
-        const auto both = extremum<Exact>(rest_.box.centre, rest_.box.half, frame_.maps[node], axis());
-        b.push_back(against_ ? both.minus : both.plus);
-    }
+    const std::vector<Exact> b = exact_extrema();
     const auto best = optimum(rest_.space, b);
     if (best && !at_most(best->value, bound_))
         fail(weight_space, "the maximum over the weight space " + gap(best->value, bound_));
-    else if (best && !at_most(dual_value(rest_.space, b, Exact(lambda)), bound_))
+    else if (best && boxes_ && !at_most(dual_value(rest_.space, b, Exact(lambda)), bound_))
         block_->exact_lambda.emplace(slot_, as_fraction(best->lambda));
 }
 
@@ -179,15 +216,18 @@ double BvCheck::greedy_lambda()
     return key(order_.back());
 }
 
-// The exact value that the method's formula has, rounding aside.
+// The exact value that the method's formula has, rounding aside; the bound itself for methods without one over these extrema.
 Interval BvCheck::method_value() const
 {
     const auto& b = extrema();
-    switch (frame_.method) {
-    case Method::limited: return optimum_;
-    case Method::convex: return std::accumulate(b.begin(), b.end(), b[0], [](const Interval& x, const Interval& y) { return maximum(x, y); });
-    default: break;
-    }
+    if (!boxes_)
+        return Interval(bound_);
+    if (frame_.methods.contains(Method::limited))
+        return optimum_;
+    if (frame_.methods == Method::corners)
+        return best_corner(rest_.space, b);
+    if (!frame_.methods.contains(Method::eq12))
+        return std::accumulate(b.begin(), b.end(), b[0], [](const Interval& x, const Interval& y) { return maximum(x, y); });
     if (b.size() == 1)
         return b[0];
     Interval first = maximum(b[0], b[1]), second = minimum(b[0], b[1]);
@@ -214,19 +254,20 @@ Interval BvCheck::boxes_at_actual_weights() const
     return most;
 }
 
-void BvCheck::attribute(const Interval& support, bool has_weight_space, Loss& loss) const
+// Of a direction in the mean over all, with the axis scaled to unit length.
+double BvCheck::scale() const
 {
     const int components = std::abs(axis()[0]) + std::abs(axis()[1]) + std::abs(axis()[2]);
-    const double scale = 1 / (std::sqrt(components) * static_cast<double>(2 * frame_.axes.size()));
-    if (!has_weight_space) {
-        loss.rounding += scale * (bound_ - middle(support));
-        return;
-    }
+    return 1 / (std::sqrt(components) * static_cast<double>(2 * frame_.axes.size()));
+}
+
+void BvCheck::attribute(const Interval& support, Loss& loss) const
+{
     const double boxes = middle(boxes_at_actual_weights()), best = middle(optimum_), value = middle(method_value());
-    loss.box += scale * (boxes - middle(support));
-    loss.interval += scale * (best - boxes);
-    loss.corner += scale * (value - best);
-    loss.rounding += scale * (bound_ - value);
+    loss.box += scale() * (boxes - middle(support));
+    loss.interval += scale() * (best - boxes);
+    loss.corner += scale() * (value - best);
+    loss.rounding += scale() * (bound_ - value);
 }
 
 } // namespace cinch::exact

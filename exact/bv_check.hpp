@@ -14,7 +14,7 @@ struct Frame {
     const DeformableSurface& surface;
     const Bvh& bvh;
     std::span<const AffineMap> maps;
-    Method method;
+    Methods methods;
     std::span<const Axis> axes;
     std::vector<Point<Interval>> exact_vertices; // enclosures
     std::vector<Vec3> computed_vertices;
@@ -30,7 +30,11 @@ struct BlockResult {
 /// Proves the bounds of single BVs of a frame; one per task, for its scratch memory. Lives under DirectedRounding.
 class BvCheck {
 public:
-    explicit BvCheck(const Frame& frame) : frame_(frame), place_(frame.surface.weights.node_count) {}
+    explicit BvCheck(const Frame& frame)
+        : frame_(frame), boxes_(frame.methods.within(box_methods)), weight_space_(frame.methods.within(box_methods | Method::local)),
+          place_(frame.surface.weights.node_count)
+    {
+    }
 
     /// Writes the BV's own places of `out`, where rest_data is set already if it applies.
     void check(std::size_t bv, std::span<const std::uint32_t> vertices, std::span<const double> supports, FrameVerdict& out, BlockResult& block);
@@ -40,17 +44,22 @@ private:
     const std::vector<Interval>& extrema() const { return against_ ? minus_ : plus_; }
     void fail(Statement statement, std::string detail);
     void enclose_extrema();
+    template <class N> void own_extrema(std::vector<N>& plus, std::vector<N>& minus) const;
+    std::vector<Exact> exact_extrema() const;
     Interval true_support() const;
-    void check_direction(const Interval& support, bool has_weight_space, Loss& loss);
+    void check_direction(const Interval& support, bool rest_holds, Loss& loss);
     void check_exact_vertices(const Interval& support);
     void check_computed_vertices();
     void check_weight_space();
     double greedy_lambda();
     Interval method_value() const;
+    double scale() const;
     Interval boxes_at_actual_weights() const;
-    void attribute(const Interval& support, bool has_weight_space, Loss& loss) const;
+    void attribute(const Interval& support, Loss& loss) const;
 
     const Frame& frame_;
+    const bool boxes_;        // extrema are those of the deformed rest box, else of each node's own vertices
+    const bool weight_space_; // the methods make that statement
     std::vector<std::size_t> place_; // of a simulation node in rest_.node; valid for nodes of the BV
     FrameVerdict* out_ = nullptr;
     BlockResult* block_ = nullptr;

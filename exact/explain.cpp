@@ -31,13 +31,15 @@ Extrema extrema_of(const OneBound& place)
     return out;
 }
 
-Exact method_value(Method method, const Extrema& e, const Exact& best)
+Exact method_value(Methods methods, const Extrema& e, const Exact& best)
 {
-    if (method == Method::limited)
+    if (methods.contains(Method::limited))
         return best;
+    if (methods == Method::corners)
+        return best_corner(e.rest.space, e.b);
     std::vector<Exact> sorted = e.b;
     std::sort(sorted.begin(), sorted.end(), [](const Exact& x, const Exact& y) { return y < x; });
-    return method == Method::convex || sorted.size() == 1 ? sorted[0] : dual_value(e.rest.space, e.b, sorted[1]);
+    return !methods.contains(Method::eq12) || sorted.size() == 1 ? sorted[0] : dual_value(e.rest.space, e.b, sorted[1]);
 }
 
 // The vertices that may be the farthest along the direction: all others lie behind one of them, by interval arithmetic.
@@ -72,7 +74,7 @@ ExactLoss exact_loss(const OneBound& place)
     Exact truth = support_of(ahead[0]);
     for (std::uint32_t k : ahead)
         truth = maximum(truth, support_of(k));
-    if (place.method == Method::vertices)
+    if (!place.methods.within(box_methods))
         return {as_fraction(zero), as_fraction(zero), as_fraction(zero), as_fraction(bound - truth), as_fraction(bound - truth)};
 
     const Extrema e = extrema_of(place);
@@ -91,7 +93,7 @@ ExactLoss exact_loss(const OneBound& place)
         boxes = first ? blended : maximum(boxes, blended);
         first = false;
     }
-    const Exact value = method_value(place.method, e, best->value);
+    const Exact value = method_value(place.methods, e, best->value);
     return {as_fraction(boxes - truth), as_fraction(best->value - boxes), as_fraction(value - best->value), as_fraction(bound - value),
             as_fraction(bound - truth)};
 }
@@ -100,7 +102,7 @@ std::string vipr(const OneBound& place)
 {
     const Extrema e = extrema_of(place);
     const auto best = optimum(e.rest.space, e.b);
-    if (!best || place.method == Method::vertices)
+    if (!best || !place.methods.within(box_methods))
         throw std::invalid_argument("vipr: there is no weight space to bound over");
     const std::size_t n = e.b.size();
     auto numbers = [&](auto&& value) {

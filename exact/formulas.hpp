@@ -59,6 +59,48 @@ template <class N> Extremum<N> extremum(const Vec3& centre, const Vec3& half, co
     return {position + radius, radius - position};
 }
 
+/// Aᵀγ in places 0 to 2 and γ·t in place 3, and γ·T x from it.
+template <class N> using Column = std::array<N, 4>;
+template <class N> Column<N> column_of(const AffineMap& map, const Axis& axis)
+{
+    Column<N> column{N(0), N(0), N(0), N(0)};
+    for (std::size_t s = 0; s < 4; ++s)
+        for (std::size_t r = 0; r < 3; ++r)
+            if (axis[r] != 0)
+                column[s] = axis[r] > 0 ? column[s] + N(map.m[r][s]) : column[s] - N(map.m[r][s]);
+    return column;
+}
+template <class N> N image_along(const Column<N>& column, const Vec3& x)
+{
+    N image = column[3];
+    for (int s = 0; s < 3; ++s)
+        image = image + column[static_cast<std::size_t>(s)] * N(x[s]);
+    return image;
+}
+
+/// The greatest of the n(n − 1) corners of §5.2.2 of the paper, each listed: h at i, 1 − Σ of the rest at j, l elsewhere.
+template <class N> N best_corner(WeightSpace space, const std::vector<N>& b)
+{
+    if (b.size() == 1)
+        return b[0];
+    N base(0), slack(1);
+    for (std::size_t k = 0; k < b.size(); ++k) {
+        base = base + N(space.l[k]) * b[k];
+        slack = slack - N(space.l[k]);
+    }
+    bool first = true;
+    N best(0);
+    for (std::size_t i = 0; i < b.size(); ++i)
+        for (std::size_t j = 0; j < b.size(); ++j) {
+            if (i == j)
+                continue;
+            const N raised = N(space.h[i]) - N(space.l[i]), value = base + raised * b[i] + (slack - raised) * b[j];
+            best = first ? value : maximum(best, value);
+            first = false;
+        }
+    return best;
+}
+
 /// D(λ) = λ + Σ_j [ l_j (b_j − λ) + (h_j − l_j) max(b_j − λ, 0) ] ≥ max over W', for every λ.
 template <class N> N dual_value(WeightSpace space, const std::vector<N>& b, const N& lambda)
 {

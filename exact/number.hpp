@@ -31,6 +31,8 @@ inline Interval minimum(const Interval& a, const Interval& b) { return -maximum(
 inline Exact absolute(const Exact& x) { return x < Exact(0) ? -x : x; }
 inline Interval absolute(const Interval& x) { return CGAL::abs(x); }
 
+using CGAL::certainly; // false where an interval comparison leaves it open
+
 inline double middle(const Interval& x) { return x.inf() + 0.5 * (x.sup() - x.inf()); }
 
 /// z·2^exponent as "p/q" in lowest terms, q > 0.

@@ -30,6 +30,90 @@ bool contains(double centre, double half, double x)
     return offset <= Exact(half) && -offset <= Exact(half);
 }
 
+// Whether |w − mean − gradient·y| ≤ residual and |(w − mean) y_i| ≤ moment_i, as far as N can tell. What is not finite says nothing.
+template <class N> bool model_holds(const WeightModel& model, double weight, const Vec3& x, const Vec3& pivot)
+{
+    const N delta = N(weight) - N(model.mean);
+    N rho = delta;
+    for (int s = 0; s < 3; ++s) {
+        const N y = N(x[s]) - N(pivot[s]);
+        rho = rho - N(model.gradient[s]) * y;
+        if (std::isfinite(model.moment[s]) && !certainly(absolute(delta * y) <= N(model.moment[s])))
+            return false;
+    }
+    return !std::isfinite(model.residual) || certainly(absolute(rho) <= N(model.residual));
+}
+
+template <class N> bool ball_holds(const RestBox& box, double radius, const Vec3& x)
+{
+    if (!std::isfinite(radius))
+        return true;
+    N squared(0);
+    for (int s = 0; s < 3; ++s) {
+        const N d = N(x[s]) - N(box.centre[s]);
+        squared = squared + d * d;
+    }
+    return certainly(squared <= N(radius) * N(radius));
+}
+
+// Local boxes and balls, and the weight models. The points are the exact tests' business: a linear program each.
+std::string model_fault(const DeformableSurface& surface, const RestBv& rest, std::span<const std::uint32_t> vertices)
+{
+    std::int64_t units = 0;
+    for (std::size_t j = 0; j < rest.node.size(); ++j) {
+        const WeightModel& model = rest.model[j];
+        const double scaled = model.mean * 0x1p53;
+        if (!(scaled >= 0 && scaled <= 0x1p53) || scaled != std::floor(scaled))
+            return "simulation node " + std::to_string(rest.node[j]) + ": mean weight " + hex(model.mean) + " is no multiple of 2^-53 up to 1";
+        units += static_cast<std::int64_t>(scaled);
+        if (units > std::int64_t{1} << 53)
+            break;
+        for (double g : {model.gradient[0], model.gradient[1], model.gradient[2]})
+            if (!std::isfinite(g))
+                return "simulation node " + std::to_string(rest.node[j]) + ": the gradient of its weight is not finite";
+    }
+    if (units != std::int64_t{1} << 53)
+        return "the mean weights do not sum to exactly 1";
+    std::vector<double> weight(rest.node.size(), 0.0); // of one vertex
+    std::vector<std::size_t> places;
+    struct Doubt {
+        std::uint32_t vertex;
+        std::size_t j;
+        double weight;
+    };
+    std::vector<Doubt> balls, models; // where intervals do not decide
+    const DirectedRounding upward; // Exact is integers, whatever the rounding
+    for (std::uint32_t k : vertices) {
+        const Vec3& x = surface.mesh.vertices[k];
+        const Weights::Row row = surface.weights.of(k);
+        places.clear();
+        for (std::size_t i = 0; i < row.node.size(); ++i) {
+            const auto j = static_cast<std::size_t>(std::lower_bound(rest.node.begin(), rest.node.end(), row.node[i]) - rest.node.begin());
+            places.push_back(j);
+            weight[j] = row.weight[i];
+            for (int s = 0; s < 3; ++s)
+                if (!(absolute(Interval(x[s]) - Interval(rest.local[j].centre[s])).sup() <= rest.local[j].half[s]) &&
+                    !contains(rest.local[j].centre[s], rest.local[j].half[s], x[s]))
+                    return "vertex " + std::to_string(k) + ", simulation node " + std::to_string(row.node[i]) + ": lies outside its local box";
+            if (!ball_holds<Interval>(rest.local[j], rest.radius[j], x))
+                balls.push_back({k, j, 0});
+        }
+        for (std::size_t j = 0; j < rest.node.size(); ++j)
+            if (!model_holds<Interval>(rest.model[j], weight[j], x, rest.pivot))
+                models.push_back({k, j, weight[j]});
+        for (std::size_t j : places)
+            weight[j] = 0;
+    }
+    auto where = [&](const Doubt& d) { return "vertex " + std::to_string(d.vertex) + ", simulation node " + std::to_string(rest.node[d.j]); };
+    for (const Doubt& d : balls)
+        if (!ball_holds<Exact>(rest.local[d.j], rest.radius[d.j], surface.mesh.vertices[d.vertex]))
+            return where(d) + ": lies outside its local ball";
+    for (const Doubt& d : models)
+        if (!model_holds<Exact>(rest.model[d.j], d.weight, surface.mesh.vertices[d.vertex], rest.pivot))
+            return where(d) + ": the model of its weight does not hold";
+    return {};
+}
+
 } // namespace
 
 void require_dyadic_weights(const DeformableSurface& surface)
@@ -153,7 +237,7 @@ std::string rest_data_fault(const DeformableSurface& surface, const Bvh& bvh, st
     for (std::size_t j = 0; j < rest.node.size(); ++j)
         if (influenced[j] < vertices.size() && rest.space.l[j] > 0)
             return "simulation node " + std::to_string(rest.node[j]) + ": l = " + hex(rest.space.l[j]) + ", but a vertex has weight 0";
-    return {};
+    return model_fault(surface, rest, vertices);
 }
 
 } // namespace cinch::exact

@@ -15,7 +15,8 @@ namespace cinch::exact {
 /// What has to hold for a bound to be proven; bits of a mask.
 enum Statement : std::uint8_t {
     rest_data = 1,         ///< the BV's rest box and weight intervals hold all its vertices
-    weight_space = 2,      ///< bound ≥ exact maximum over W' of the exact extrema of the deformed rest box (not for `vertices`)
+    weight_space = 2,      ///< bound ≥ exact maximum over W' of exact extrema: of the deformed rest box for the box_methods, of each
+                           ///< simulation node's own vertices where `local` is with them; no statement for other methods
     exact_vertices = 4,    ///< bound ≥ every vertex deformed in real arithmetic
     computed_vertices = 8, ///< bound ≥ every vertex as evaluate_vertex computes it; only +∞ contains a coordinate that is not finite
 };
@@ -31,10 +32,10 @@ struct Violation {
 /// How much tightness a bound gives away, averaged over a BV's directions (axes scaled to unit length), in units of length.
 /// The four add up to bound − true support.
 struct Loss {
-    double box = 0;      ///< true support → rest boxes deformed with the vertices' actual weights
+    double box = 0;      ///< true support → extrema (rest boxes, or each node's own vertices) with the vertices' actual weights
     double interval = 0; ///< actual weights → anything in W'
-    double corner = 0;   ///< W' → the corner that the method takes
-    double rounding = 0; ///< real arithmetic → proven double
+    double corner = 0;   ///< W' → what the method takes; negative where it knows more of the weights than W' does
+    double rounding = 0; ///< real arithmetic → proven double; part of `corner` for methods other than the box_methods
 };
 
 struct BvReport {
@@ -47,7 +48,7 @@ struct FrameVerdict {
     std::vector<BvReport> bvs;
     std::size_t decided_by_filter = 0; ///< bounds that interval arithmetic settled; the rest took exact arithmetic
     std::vector<Violation> examples;   ///< the first few, in order of BV
-    std::vector<double> lambda;        ///< per BV and direction: bound ≥ D(λ) certifies the weight-space statement; 0 for `vertices`
+    std::vector<double> lambda;        ///< per BV and direction for the box_methods: bound ≥ D(λ) certifies the weight-space statement; else 0
     std::map<std::size_t, std::string> exact_lambda; ///< places where no double λ was found to do so: λ as "p/q"
 };
 
@@ -64,7 +65,7 @@ public:
     const std::vector<std::string>& rest_data_faults() const { return faults_; }
 
     /// `supports` as refit() fills them for this frame. Results do not depend on the thread count.
-    FrameVerdict check(std::span<const AffineMap> maps, Method method, int kdop, std::span<const double> supports) const;
+    FrameVerdict check(std::span<const AffineMap> maps, Methods methods, int kdop, std::span<const double> supports) const;
 
 private:
     const DeformableSurface& surface_;

@@ -62,7 +62,7 @@ class Checker:
     def __init__(self, header):
         self.header = header
         self.axes = AXES[header["kdop"]]
-        self.method = header["method"]
+        self.weight_space = header["weight_space"]
         self.rest, self.rows, self.bvs, self.bounds_checked = [], [], [], 0
 
     # ---- rest data -------------------------------------------------------------------------------------------------
@@ -225,7 +225,7 @@ class Checker:
             p, q = bound.as_integer_ratio()
             require(p << (self.bits + WEIGHT_BITS) >= exact[d] * q, where + ": an exact vertex lies outside")
             require(bound >= computed[d], where + ": a computed vertex lies outside")
-            if self.method == "vertices":
+            if not self.weight_space:
                 continue
             if extrema is None:
                 extrema = self.extrema(i, where)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <limits>
 #include <sstream>
 #include <system_error>
@@ -12,6 +13,7 @@
 #include "experiments/fuzz/fuzz.hpp"
 #include "experiments/report/provenance.hpp"
 #include "experiments/verify.hpp"
+#include "toolkit/bounds/kernel/bound_kernel.hpp"
 #include "toolkit/deform/motion.hpp"
 #include "toolkit/surface/input_error.hpp"
 
@@ -75,15 +77,32 @@ template <class Enum> CLI::Validator one_of(std::vector<std::pair<std::string, E
         "");
 }
 
+void add_methods(CLI::App& command, Methods& methods)
+{
+    command.add_option_function<std::string>("--method", [&methods](const std::string& text) {
+        const auto named = named_methods(text);
+        if (!named)
+            throw CLI::ValidationError("--method", fmt::format("expected one or more, joined by '+', of {}, found '{}'", fmt::join(method_names, ", "), text));
+        methods = *named;
+    }, wrapped(fmt::format("{}, or several joined by '+', whose bounds are intersected [best]", fmt::join(method_names, ", "))))->option_text("NAME");
+}
+
+void add_arithmetic(CLI::App& command, Precision& precision, int& passes)
+{
+    command.add_option("--precision", precision, wrapped("arithmetic of the bounds: float or double [float]"))
+        ->transform(one_of<Precision>({{"float", Precision::float32}, {"double", Precision::float64}}))->option_text("NAME");
+    command.add_option("--passes", passes, wrapped("evaluations of the dual function for local, support and best [1]"))
+        ->check(CLI::Range(0, 64))->option_text("N");
+}
+
 void add_verify(CLI::App& app, VerifyOptions& o)
 {
     CLI::App& command = *app.add_subcommand("verify", "prove every bound of every BV, direction and frame in exact arithmetic");
     add_input(command, o.input);
-    std::vector<std::pair<std::string, Method>> methods;
-    for (std::size_t i = 0; i < method_names.size(); ++i)
-        methods.emplace_back(method_names[i], static_cast<Method>(i));
     auto option = [&](const char* name, auto& value, const std::string& description) { return command.add_option(name, value, wrapped(description)); };
-    option("--method", o.method, "convex, eq12, limited or vertices [limited]")->transform(one_of(methods))->option_text("NAME");
+    add_methods(command, o.methods);
+    add_arithmetic(command, o.precision, o.passes);
+    command.add_flag("--remember", o.remember, wrapped("begin the search for lambda where the last frame left it"));
     option("--kdop", o.kdop, "directions of the bounds: 6, 14, 18 or 26 [6]")->check(CLI::IsMember({6, 14, 18, 26}))->option_text("K");
     option("--leaf", o.leaf, "most triangles per leaf [1]")->check(CLI::Range(1, 1000000))->option_text("N");
     option("--threads", o.threads, "threads [all cores]")->check(CLI::Range(1, 1024))->option_text("N");
@@ -208,6 +227,10 @@ int main(int argc, char** argv)
 #endif
         return parsed.get_subcommands().empty() ? bad_input : 0;
     };
+    if (const char* target = std::getenv("CINCH_TARGET"); target && *target && !force_kernel_target(target)) {
+        fmt::print(stderr, "cinch: CINCH_TARGET={}: this machine has {}\n", target, fmt::join(kernel_targets(), ", "));
+        return bad_input;
+    }
     if (argc == 1) {
         fmt::print(stderr, "cinch: no command given (see 'cinch --help')\n");
         return bad_input;

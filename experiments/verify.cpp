@@ -37,20 +37,34 @@ void damage(Bvh& bvh, Sabotage sabotage)
     }
 }
 
-LadderTotals check_ladder(const Bvh& bvh, const DeformableSurface& surface, std::span<const AffineMap> maps, const VerifyOptions& options,
-                          Rounding rounding)
-{
-    std::vector<double> looser, tighter(bvh.bvs.size() * static_cast<std::size_t>(options.kdop));
-    LadderTotals totals;
-    for (const Method method : {Method::convex, Method::eq12, Method::limited}) {
-        refit(bvh, surface, maps, {method, options.kdop, rounding}, tighter);
-        for (std::size_t i = 0; i < looser.size(); ++i)
-            totals.broken += !(tighter[i] <= looser[i]);
-        totals.compared += looser.size();
-        looser = tighter;
+// limited ≤ eq12 ≤ convex on the doubles of every frame.
+class Ladder {
+public:
+    Ladder(const Bvh& bvh, const DeformableSurface& surface, const RefitOptions& options)
+        : looser_(bvh.bvs.size() * static_cast<std::size_t>(options.kdop)), tighter_(looser_)
+    {
+        for (const Method method : {Method::convex, Method::eq12, Method::limited}) {
+            RefitOptions rung = options;
+            rung.methods = method;
+            rungs_.emplace_back(bvh, surface, rung);
+        }
     }
-    return totals;
-}
+    void check(std::span<const AffineMap> maps, LadderTotals& totals)
+    {
+        rungs_[0](maps, looser_);
+        for (std::size_t r = 1; r < rungs_.size(); ++r) {
+            rungs_[r](maps, tighter_);
+            for (std::size_t i = 0; i < looser_.size(); ++i)
+                totals.broken += !(tighter_[i] <= looser_[i]);
+            totals.compared += looser_.size();
+            looser_.swap(tighter_);
+        }
+    }
+
+private:
+    std::vector<double> looser_, tighter_;
+    std::vector<Refitter> rungs_;
+};
 
 void add(const Bvh& bvh, const exact::FrameVerdict& frame, int kdop, VerifyTotals& totals)
 {
@@ -119,13 +133,16 @@ int verify(const VerifyOptions& options)
     const auto start = std::chrono::steady_clock::now();
     const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
-    if (!options.vipr.empty() && options.methods == Method::vertices)
-        throw InputError("--vipr needs a method that bounds over weights: convex, eq12 or limited");
+    if (!options.vipr.empty() && !options.methods.within(box_methods))
+        throw InputError("--vipr needs methods that bound over weights and the BV's own box: convex, corners, eq12, limited");
     const Input input = load_input(options.input);
     Bvh bvh = build_bvh(input.surface, options.leaf);
     damage(bvh, options.sabotage);
     const Rounding rounding = options.sabotage == Sabotage::no_rounding ? Rounding::plain : Rounding::proven;
     const exact::Verifier verifier(input.surface, bvh);
+    const RefitOptions refit_options{options.methods, options.kdop, rounding, options.precision, options.passes, options.remember};
+    Refitter refit(bvh, input.surface, refit_options);
+    Ladder ladder(bvh, input.surface, refit_options);
 
     VerifyTotals totals;
     totals.frames_wanted = input.clip.frames.size();
@@ -151,7 +168,7 @@ int verify(const VerifyOptions& options)
         for (const auto& maps : input.clip.frames) {
             if (interrupted())
                 break;
-            refit(bvh, input.surface, maps, {options.methods, options.kdop, rounding}, supports);
+            totals.unbounded_nodes += refit(maps, supports).unbounded_nodes;
             const exact::FrameVerdict verdict = verifier.check(maps, options.methods, options.kdop, supports);
             if (certificate)
                 exact::certify_frame(totals.frames, maps, options.methods, options.kdop, supports, verdict, write);
@@ -159,9 +176,7 @@ int verify(const VerifyOptions& options)
             totals.infinite += static_cast<std::size_t>(std::count_if(supports.begin(), supports.end(), [](double s) { return std::isinf(s); }));
             if (options.volume)
                 add_volumes(input.surface, bvh, maps, options.kdop, supports, totals.volumes);
-            const LadderTotals ladder = check_ladder(bvh, input.surface, maps, options, rounding);
-            totals.ladder.compared += ladder.compared;
-            totals.ladder.broken += ladder.broken;
+            ladder.check(maps, totals.ladder);
             progress.done(totals.frames);
         }
         if (totals.frames > 0)

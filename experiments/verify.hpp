@@ -2,7 +2,7 @@
 #pragma once
 
 #include "experiments/input.hpp"
-#include "toolkit/bounds/method.hpp"
+#include "toolkit/hierarchy/refit.hpp"
 
 namespace cinch {
 
@@ -12,6 +12,9 @@ enum class Sabotage { none, no_rounding, swap_interval, lower_h };
 struct VerifyOptions {
     InputOptions input;
     Methods methods = Method::best;
+    Precision precision = Precision::float32;
+    int passes = 1;
+    bool remember = false;
     int kdop = 6;
     std::size_t leaf = 1; ///< triangles
     int threads = 0;      ///< 0: as many as the machine has

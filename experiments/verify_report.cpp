@@ -6,6 +6,7 @@
 
 #include "experiments/report/number.hpp"
 #include "experiments/report/table.hpp"
+#include "toolkit/bounds/directions.hpp"
 
 namespace cinch {
 namespace {
@@ -38,7 +39,7 @@ void print_table(const Input& input, const VerifyOptions& options, const VerifyT
 {
     for (const std::string& line : input.report)
         fmt::print("{}\n", line);
-    fmt::print("method {}, {}-DOP, at most {} per leaf; {} of {}\n\n", name_of(options.methods), options.kdop,
+    fmt::print("method {} in {}, {}-DOP, at most {} per leaf; {} of {}\n\n", name_of(options.methods), name_of(options.precision), options.kdop,
                counted(options.leaf, "triangle", "triangles"), totals.frames, counted(totals.frames_wanted, "frame", "frames"));
 
     std::vector<std::vector<std::string>> rows;
@@ -88,7 +89,8 @@ void print_json(const Input& input, const VerifyOptions& options, const VerifyTo
 {
     using nlohmann::json;
     auto base = [&] {
-        return json{{"experiment", "verify"}, {"input", input.name}, {"method", name_of(options.methods)}, {"kdop", options.kdop}};
+        return json{{"experiment", "verify"}, {"input", input.name}, {"method", name_of(options.methods)}, {"precision", name_of(options.precision)},
+                    {"kdop", options.kdop}};
     };
     auto print = [](const json& record) { fmt::print("{}\n", record.dump(-1, ' ', false, json::error_handler_t::replace)); };
     for (std::size_t i = 0; i < totals.levels.size(); ++i) {

@@ -31,6 +31,7 @@ struct VerifyTotals {
     std::size_t frames = 0, frames_wanted = 0;
     std::size_t bounds = 0, proven = 0, violated = 0, decided_by_filter = 0;
     std::size_t infinite = 0; ///< of the proven ones
+    std::size_t unbounded_nodes = 0; ///< transforms too large for the arithmetic, over all frames
     double seconds = 0;
     std::vector<LevelTotals> levels;
     LadderTotals ladder;

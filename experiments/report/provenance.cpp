@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "commit.hpp"
+#include "toolkit/bounds/kernel/bound_kernel.hpp"
 
 namespace cinch {
 namespace {
@@ -32,7 +33,7 @@ std::string compiler_name()
 
 Provenance provenance(int threads, std::uint64_t seed)
 {
-    return {CINCH_VERSION, CINCH_COMMIT, compiler_name(), CINCH_FLAGS, cpu_name(), "scalar", threads, seed};
+    return {CINCH_VERSION, CINCH_COMMIT, compiler_name(), CINCH_FLAGS, cpu_name(), kernel_target(), threads, seed};
 }
 
 std::string describe(const Provenance& p)

@@ -53,6 +53,9 @@ private:
 };
 constexpr Methods operator|(Method a, Method b) { return Methods(a) | b; }
 
+/// Those that hold for every w ∈ W' over the BV's own rest box.
+inline constexpr Methods box_methods = Method::convex | Method::corners | Method::eq12 | Method::limited;
+
 /// "support+linear", in the order of the ladder.
 inline std::string name_of(Methods methods)
 {

@@ -12,11 +12,14 @@ namespace cinch {
 /// The arithmetic of the kernels. Both give proven bounds; float's are looser by a few 1e-6 of the surface's extent.
 enum class Precision { float32, float64 };
 
+/// "float" or "double".
+constexpr std::string_view name_of(Precision precision) { return precision == Precision::float32 ? "float" : "double"; }
+
 struct RefitOptions {
     Methods methods = Method::best; ///< several are intersected
     int kdop = 6;                   ///< 6, 14, 18 or 26
     Rounding rounding = Rounding::proven;
-    Precision precision = Precision::float64; ///< of the methods that have kernels: all but sphere, corners and vertices
+    Precision precision = Precision::float32; ///< of the methods that have kernels: all but sphere, corners and vertices
     int passes = 1;                 ///< evaluations of D for local, support and best
     bool remember = false;          ///< λ of local, support and best begins where the last frame left it
 };
