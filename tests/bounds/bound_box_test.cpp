@@ -21,7 +21,7 @@ struct Bounded {
     {
         BoundScratch scratch;
         std::vector<double> out(static_cast<std::size_t>(kdop));
-        bound_box({centre, half, node, {l, h}, 2}, maps, method, rounding, axes_of(kdop), scratch, out);
+        bound_box({{centre, half}, node, {l, h}, {}, {}, Vec3::Zero(), {}, {}, 0, 2}, maps, method, rounding, axes_of(kdop), scratch, out);
         return out;
     }
 };

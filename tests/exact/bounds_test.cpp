@@ -94,7 +94,7 @@ Count below_exact(const Case& c, Method method, Rounding rounding)
     Count count;
     BoundScratch scratch;
     std::vector<double> supports(26);
-    bound_box({c.centre, c.half, c.node, {c.l, c.h}, static_cast<std::uint32_t>(c.node.size())}, c.maps, method, rounding, axes_of(26), scratch, supports);
+    bound_box({{c.centre, c.half}, c.node, {c.l, c.h}, {}, {}, Vec3::Zero(), {}, {}, 0, static_cast<std::uint32_t>(c.node.size())}, c.maps, method, rounding, axes_of(26), scratch, supports);
     for (std::size_t d = 0; d < 26; ++d) {
         if (std::isinf(supports[d])) {
             ++count.checked;
@@ -155,7 +155,7 @@ TEST_CASE("finite cases get finite bounds")
     for (Family family : {generic, large_translation, subnormal, near_singular, huge})
         for (int trial = 0; trial < 50; ++trial) {
             const Case c = draw(family, random);
-            bound_box({c.centre, c.half, c.node, {c.l, c.h}, 8}, c.maps, Method::limited, Rounding::proven, axes_of(26), scratch, supports);
+            bound_box({{c.centre, c.half}, c.node, {c.l, c.h}, {}, {}, Vec3::Zero(), {}, {}, 0, 8}, c.maps, Method::limited, Rounding::proven, axes_of(26), scratch, supports);
             for (double s : supports)
                 REQUIRE(std::isfinite(s));
         }
@@ -168,7 +168,7 @@ TEST_CASE("translations of 1e8 on an extent of 1e-3 inflate the bound by about 1
     std::vector<double> supports(6);
     for (int trial = 0; trial < 50; ++trial) {
         const Case c = draw(large_translation, random);
-        bound_box({c.centre, c.half, c.node, {c.l, c.h}, static_cast<std::uint32_t>(c.node.size())}, c.maps, Method::limited, Rounding::proven, axes_of(6), scratch, supports);
+        bound_box({{c.centre, c.half}, c.node, {c.l, c.h}, {}, {}, Vec3::Zero(), {}, {}, 0, static_cast<std::uint32_t>(c.node.size())}, c.maps, Method::limited, Rounding::proven, axes_of(6), scratch, supports);
         for (std::size_t d = 0; d < 6; ++d) {
             std::vector<Exact> b;
             for (const AffineMap& map : c.maps) {

@@ -171,7 +171,7 @@ TEST_CASE("mutation: a rest box too small")
     Scene scene;
     Bv& bv = scene.bvh.bvs[1];
     for (int i = 0; i < 4; ++i) // the stored half is at most three steps above the tightest
-        bv.half.y() = std::nextafter(bv.half.y(), 0.0);
+        bv.box.half.y() = std::nextafter(bv.box.half.y(), 0.0);
     CHECK(violated(scene.verdict(Method::limited, 6, scene.supports(Method::limited, 6)), rest_data) == 6);
 }
 
@@ -237,8 +237,8 @@ TEST_CASE("damaged rest data are faults, whatever they hold")
     };
     faulty([](Bvh& bvh) { bvh.node[0] = 0xfffffff0u; });
     faulty([](Bvh& bvh) { bvh.bvs[0].influence_count = 0; });
-    faulty([&](Bvh& bvh) { bvh.bvs[0].centre.x() = nan; });
-    faulty([&](Bvh& bvh) { bvh.bvs[0].centre.x() = inf; });
+    faulty([&](Bvh& bvh) { bvh.bvs[0].box.centre.x() = nan; });
+    faulty([&](Bvh& bvh) { bvh.bvs[0].box.centre.x() = inf; });
     faulty([&](Bvh& bvh) { bvh.bvs[0].box.half.x() = nan; });
     faulty([&](Bvh& bvh) { bvh.bvs[0].box.half.x() = -1; });
     faulty([&](Bvh& bvh) { bvh.h[0] = nan; });

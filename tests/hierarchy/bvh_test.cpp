@@ -85,7 +85,7 @@ TEST_CASE("hard meshes: one triangle, none, all alike, flat, huge, tiny")
         const Bvh tree = build_bvh(rigid(scaled), 1);
         CHECK(tree.level.size() - 1 == 9);
         for (const Bv& bv : tree.bvs)
-            CHECK((std::isfinite(bv.centre.sum()) && std::isfinite(bv.half.sum())));
+            CHECK((std::isfinite(bv.box.centre.sum()) && std::isfinite(bv.box.half.sum())));
     }
     TriangleMesh flat{{{0, 0, 7}, {1, 0, 7}, {0, 1, 7}}, {{0, 1, 2}}};
     CHECK(build_bvh(rigid(flat), 1).bvs[0].box.half.z() == 0);

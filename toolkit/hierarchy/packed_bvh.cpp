@@ -136,7 +136,8 @@ private:
         double kappa = 0;
         Vec3 reach; // of |y| about the pivot
         for (int s = 0; s < 3; ++s)
-            reach[s] = succ(std::abs(static_cast<double>(bv_.centre[s]) - static_cast<double>(bv_.pivot[s])) * (1 + 4 * unit_roundoff) + static_cast<double>(bv_.half[s]));
+            reach[s] = sum_up(up_product(std::abs(static_cast<double>(bv_.centre[s]) - static_cast<double>(bv_.pivot[s])), 1 + 4 * unit_roundoff),
+                              static_cast<double>(bv_.half[s]));
         for (std::size_t j = 0; j < rest.node.size(); ++j) {
             const WeightModel& model = rest.model[j];
             const double moved = std::abs(model.mean - means[j]); // dyadic: exact
@@ -149,9 +150,8 @@ private:
                 residual = sum_up(residual, up_product(std::abs(g), pivot_off_[s]));
                 const double m = sum_up(sum_up(model.moment[s], pivot_off_[s]), up_product(moved, reach[s]));
                 kappa += std::abs(g) * reach[s];
-                const double about = std::abs(static_cast<double>(bv_.centre[s])) + static_cast<double>(bv_.half[s]);
                 if (m > 0)
-                    moment_share = std::max(moment_share, m / about);
+                    moment_share = std::max(moment_share, m / out_.rest.about_origin[s]);
                 blocks.put(j, 1 + static_cast<std::size_t>(s), gradient, 0);
                 blocks.put(j, 5 + static_cast<std::size_t>(s), up<T>(m), 0);
             }
