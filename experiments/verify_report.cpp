@@ -80,7 +80,7 @@ void print_table(const Input& input, const VerifyOptions& options, const VerifyT
     else
         fmt::print("order of the ladder: limited <= eq12 <= convex in all of {} comparisons\n", grouped(totals.ladder.compared));
     if (totals.infinite)
-        fmt::print("{} infinite: something overflows a double\n", counted(totals.infinite, "bound is", "bounds are"));
+        fmt::print("{} infinite: something overflows the arithmetic\n", counted(totals.infinite, "bound is", "bounds are"));
     fmt::print("{} bounds, {} proven, {} violated\n", grouped(totals.bounds), grouped(totals.proven), grouped(totals.violated));
     fmt::print("{}, filter hit rate {:.4f}\n{}\n", duration(totals.seconds), rate(totals.decided_by_filter, totals.bounds), describe(from));
 }

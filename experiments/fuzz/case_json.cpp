@@ -48,6 +48,7 @@ std::string to_json(const FuzzCase& c, const std::string& fault)
     }
     out["kdop"] = c.kdop;
     out["trial"] = c.trial;
+    out["passes"] = c.passes;
     for (const Vec3& p : c.rest)
         out["rest"].push_back(hex_array({p.data(), 3}));
     for (const auto& row : c.weights)
@@ -72,6 +73,7 @@ FuzzCase fuzz_case_from_json(const std::string& text, const std::string& file)
         const auto n = root.at("n").get<std::size_t>();
         out.kdop = root.at("kdop").get<int>();
         out.trial = root.value("trial", 0u);
+        out.passes = root.value("passes", 1);
         for (const json& p : root.at("rest")) {
             const auto x = numbers(p, file, "rest", 3);
             out.rest.emplace_back(x[0], x[1], x[2]);

@@ -336,7 +336,10 @@ FuzzCase draw_case(std::uint64_t seed, std::uint64_t index, std::string_view wan
     FuzzCase out;
     out.family = family->name;
     family->draw(random, out);
-    out.trial = out.is_surface() ? 1 + static_cast<std::uint32_t>(random.below(surface_trials)) : 0;
+    if (out.is_surface()) {
+        out.trial = 1 + static_cast<std::uint32_t>(random.below(surface_trials));
+        out.passes = static_cast<int>(random.below(4));
+    }
     return out;
 }
 

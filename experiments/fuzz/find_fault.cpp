@@ -123,10 +123,9 @@ std::string surface_fault(const FuzzCase& problem, Defect defect)
             }
         }
         for (const Method method : {Method::local, Method::support, Method::linear, Method::best}) {
-            const int passes = static_cast<int>(problem.maps.size() % 4); // 0 to 3, the same for a case wherever it is run
             if (!wanted())
                 continue;
-            if (std::string fault = fault_of(method, precision, bounds_of(method, precision, passes)); !fault.empty())
+            if (std::string fault = fault_of(method, precision, bounds_of(method, precision, problem.passes)); !fault.empty())
                 return fault;
         }
         if (!wanted())

@@ -17,7 +17,7 @@ import check_certificate  # noqa: E402
 
 def certificate(folder, arguments, name="c.jsonl"):
     path = os.path.join(folder, name)
-    subprocess.run([CINCH, "verify", *arguments.split(), "--certificate", path], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run([CINCH, "verify", *(() if "--method" in arguments else ("--method", "limited")), *arguments.split(), "--certificate", path], check=True, stdout=subprocess.DEVNULL)
     return path
 
 
@@ -99,7 +99,8 @@ class CertificateTest(unittest.TestCase):
         self.assertIsNone(verdict(self.lines))
 
     def test_every_method_and_compression(self):
-        for i, arguments in enumerate(("--method eq12 --kdop 14", "--method convex --kdop 18", "--method vertices --kdop 26", "--kdop 6")):
+        for i, arguments in enumerate(("--method eq12 --kdop 14", "--method convex --kdop 18", "--method vertices --kdop 26", "--kdop 6",
+                                       "--method best --kdop 14", "--method corners", "--method support+linear --precision double")):
             path = certificate(self.folder.name, "santa --leaf 500 --frames 1 " + arguments, f"{i}.jsonl.gz")
             done = subprocess.run([sys.executable, CHECKER, path], stdout=subprocess.PIPE, text=True)
             self.assertEqual(done.returncode, 0, done.stdout)

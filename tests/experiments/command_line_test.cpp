@@ -37,7 +37,7 @@ TEST_CASE("bad usage exits 2 with one line")
     check_refused("", "no command given");
     check_refused("verfiy", "verfiy");
     check_refused("verify --kdop 8", "--kdop");
-    check_refused("verify --method quick", "--method: expected convex, eq12, limited or vertices, found 'quick'");
+    check_refused("verify --method quick", "--method: expected one or more, joined by '+', of convex, sphere, ");
     check_refused("verify --frames 0", "--frames");
     check_refused("verify --leaf none", "--leaf");
     check_refused("verify --unknown", "--unknown");

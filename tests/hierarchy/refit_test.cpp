@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <cfenv>
 #include <limits>
+#include <numeric>
 
 #include <catch2/catch.hpp>
 #include <tbb/global_control.h>
@@ -22,7 +24,18 @@ std::vector<double> refitted(const Bvh& bvh, const test::Example& e, std::size_t
     return supports;
 }
 
-constexpr Method methods[] = {Method::convex, Method::eq12, Method::limited, Method::vertices};
+constexpr Methods methods[] = {Method::convex, Method::sphere, Method::corners, Method::eq12, Method::limited, Method::local,
+                               Method::support, Method::linear, Method::best, Method::vertices, Method::local | Method::support};
+constexpr Precision precisions[] = {Precision::float32, Precision::float64};
+
+std::vector<std::pair<Methods, Precision>> every_choice()
+{
+    std::vector<std::pair<Methods, Precision>> all;
+    for (Precision precision : precisions)
+        for (Methods method : methods)
+            all.emplace_back(method, precision);
+    return all;
+}
 
 } // namespace
 
@@ -33,13 +46,26 @@ TEST_CASE("in doubles vertices ≤ limited ≤ eq12 ≤ convex, and every comput
     for (std::size_t frame : {0u, 1u, 2u})
         for (int k : {6, 14, 18, 26}) {
             std::vector<std::vector<double>> s;
-            for (Method method : methods)
-                s.push_back(refitted(bvh, e, frame, {method, k}));
-            for (std::size_t i = 0; i < s[0].size(); ++i) {
-                REQUIRE(s[1][i] <= s[0][i]);
-                REQUIRE(s[2][i] <= s[1][i]);
-                REQUIRE(s[3][i] <= s[2][i] + 1e-12);
+            const auto truth = refitted(bvh, e, frame, {Method::vertices, k, Rounding::plain});
+            for (Precision precision : precisions) {
+                const auto convex = refitted(bvh, e, frame, {Method::convex, k, Rounding::proven, precision});
+                const auto eq12 = refitted(bvh, e, frame, {Method::eq12, k, Rounding::proven, precision});
+                const auto limited = refitted(bvh, e, frame, {Method::limited, k, Rounding::proven, precision});
+                for (std::size_t i = 0; i < convex.size(); ++i) {
+                    REQUIRE(eq12[i] <= convex[i]);
+                    REQUIRE(limited[i] <= eq12[i]);
+                }
+                for (Methods method : methods)
+                    s.push_back(refitted(bvh, e, frame, {method, k, Rounding::proven, precision}));
+                const auto support = refitted(bvh, e, frame, {Method::support, k, Rounding::proven, precision}),
+                           linear = refitted(bvh, e, frame, {Method::linear, k, Rounding::proven, precision}),
+                           both = refitted(bvh, e, frame, {Method::support | Method::linear, k, Rounding::proven, precision});
+                for (std::size_t i = 0; i < both.size(); ++i)
+                    REQUIRE(both[i] == std::min(support[i], linear[i]));
             }
+            for (const auto& supports : s)
+                for (std::size_t i = 0; i < truth.size(); ++i)
+                    REQUIRE(supports[i] >= truth[i] - 1e-14);
             std::vector<Vec3> v(e.surface.mesh.vertices.size());
             evaluate(e.surface.mesh.vertices, e.surface.weights, e.frames[frame], v);
             for (std::size_t bv = 0; bv < bvh.bvs.size(); ++bv)
@@ -58,25 +84,28 @@ TEST_CASE("the same bits for 1, 2 and 7 threads")
     const tbb::global_control seven(tbb::global_control::max_allowed_parallelism, 7);
     const test::Example e = test::example(2000, 60);
     const Bvh bvh = build_bvh(e.surface, 1);
-    for (Method method : methods) {
-        std::vector<std::vector<double>> results;
-        for (int threads : {1, 2, 7})
-            tbb::task_arena(threads).execute([&] { results.push_back(refitted(bvh, e, 2, {method, 14})); });
-        CHECK(results[0] == results[1]);
-        CHECK(results[0] == results[2]);
-    }
+    for (Precision precision : precisions)
+        for (Methods method : methods) {
+            std::vector<std::vector<double>> results;
+            for (int threads : {1, 2, 7})
+                tbb::task_arena(threads).execute([&] { results.push_back(refitted(bvh, e, 2, {method, 14, Rounding::proven, precision})); });
+            INFO(name_of(method));
+            CHECK(results[0] == results[1]);
+            CHECK(results[0] == results[2]);
+        }
 }
 
 TEST_CASE("a map that is not finite makes the BVs that it influences infinite and changes no other")
 {
     test::Example e = test::example(600, 40);
     const Bvh bvh = build_bvh(e.surface, 1);
-    for (Method method : methods) {
-        const auto before = refitted(bvh, e, 2, {method, 6});
+    for (const auto& [method, precision] : every_choice()) {
+        INFO(name_of(method));
+        const auto before = refitted(bvh, e, 2, {method, 6, Rounding::proven, precision});
         test::Example broken = e;
         for (auto& row : broken.frames[2][5].m)
             row[3] = std::numeric_limits<double>::quiet_NaN();
-        const auto after = refitted(bvh, broken, 2, {method, 6});
+        const auto after = refitted(bvh, broken, 2, {method, 6, Rounding::proven, precision});
         std::size_t infinite_bvs = 0;
         for (std::size_t bv = 0; bv < bvh.bvs.size(); ++bv) {
             const RestBv rest = bvh.rest(bv);
@@ -107,4 +136,48 @@ TEST_CASE("wrong sizes and a changed rounding mode are refused")
     }
     std::fesetround(FE_TONEAREST);
     CHECK(refused);
+}
+
+TEST_CASE("infinite and NaN transforms are reported, and a Refitter forgets them with the frame")
+{
+    test::Example e = test::example(600, 40);
+    const Bvh bvh = build_bvh(e.surface, 4);
+    for (Precision precision : precisions) {
+        Refitter refit(bvh, e.surface, {Method::best, 6, Rounding::proven, precision});
+        std::vector<double> before(bvh.bvs.size() * 6), after(before);
+        CHECK(refit(e.frames[2], before).unbounded_nodes == 0);
+        auto broken = e.frames[2];
+        broken[3].m[0][0] = std::numeric_limits<double>::infinity();
+        broken[7].m[2][1] = std::numeric_limits<double>::quiet_NaN();
+        const RefitReport report = refit(broken, after);
+        CHECK(report.unbounded_nodes == 2);
+        CHECK(report.infinite > 0);
+        CHECK(report.infinite == static_cast<std::size_t>(std::count(after.begin(), after.end(), infinite)));
+        refit(e.frames[2], after);
+        CHECK(after == before);
+    }
+}
+
+TEST_CASE("every pass of the dual evaluation tightens the bound; a remembered λ converges without more")
+{
+    const test::Example e = test::example(2000, 60);
+    const Bvh bvh = build_bvh(e.surface, 8);
+    auto width = [](const std::vector<double>& s) { return std::accumulate(s.begin(), s.end(), 0.0); };
+    for (Method method : {Method::local, Method::support}) {
+        std::vector<double> looser;
+        for (int passes : {0, 1, 2, 3, 6}) {
+            const auto s = refitted(bvh, e, 2, {method, 6, Rounding::proven, Precision::float64, passes});
+            for (std::size_t i = 0; i < looser.size(); ++i)
+                REQUIRE(s[i] <= looser[i] + 1e-14); // one step up or down in the last pass
+            if (!looser.empty())
+                CHECK(width(s) <= width(looser));
+            looser = s;
+        }
+        Refitter remembering(bvh, e.surface, {method, 6, Rounding::proven, Precision::float64, 1, true});
+        std::vector<double> s(looser.size());
+        for (int frame = 0; frame < 8; ++frame)
+            remembering(e.frames[2], s);
+        CHECK(width(s) <= width(refitted(bvh, e, 2, {method, 6, Rounding::proven, Precision::float64, 1})));
+        CHECK(width(s) == Approx(width(looser)).epsilon(1e-4));
+    }
 }

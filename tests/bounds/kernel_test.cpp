@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <catch2/catch.hpp>
+
+#include "tests/support.hpp"
+#include "toolkit/bounds/bound_box.hpp"
+#include "toolkit/bounds/kernel/bound_kernel.hpp"
+#include "toolkit/hierarchy/packed_bvh.hpp"
+
+using namespace cinch;
+
+namespace {
+
+constexpr Method kinds[] = {Method::convex, Method::eq12, Method::limited, Method::local, Method::support, Method::linear, Method::best};
+
+struct Scene {
+    test::Example e = test::example(900, 70); // BVs of 5 to 70 simulation nodes, so blocks with and without repeated ones
+    Bvh bvh = build_bvh(e.surface, 2);
+
+    template <class T> std::vector<double> bounds(Method kind, int kdop, Rounding rounding, int passes, bool remember = false) const
+    {
+        const PackedBvh<T> packed = pack<T>(bvh, e.surface, choose_kinds(bvh, e.surface, kind));
+        ProjectedMaps<T> maps;
+        std::vector<T> remembered(remember ? packed.bvs.size() * static_cast<std::size_t>(kdop) : 0, std::numeric_limits<T>::quiet_NaN());
+        KernelScratch<T> scratch;
+        std::vector<double> all;
+        for (const auto& frame : e.frames) {
+            project<T>(frame, packed.rest, kdop, rounding, maps);
+            std::vector<double> supports(bvh.bvs.size() * static_cast<std::size_t>(kdop));
+            bound_packed<T>({packed.bvs, packed.node, packed.value, &maps, rounding, passes, remember ? remembered.data() : nullptr}, 0, bvh.bvs.size(),
+                            scratch, supports);
+            all.insert(all.end(), supports.begin(), supports.end());
+        }
+        return all;
+    }
+};
+
+} // namespace
+
+TEST_CASE("the same bits on every target of this machine")
+{
+    const Scene scene;
+    const auto targets = kernel_targets();
+    REQUIRE(targets.size() >= 1);
+    CAPTURE(targets);
+    for (Method kind : kinds)
+        for (int kdop : {6, 14, 18, 26})
+            for (Rounding rounding : {Rounding::proven, Rounding::plain})
+                for (int passes : {0, 1, 3}) {
+                    std::vector<std::vector<double>> single, twice;
+                    for (const std::string& target : targets) {
+                        REQUIRE(force_kernel_target(target));
+                        REQUIRE(kernel_target() == target);
+                        single.push_back(scene.bounds<float>(kind, kdop, rounding, passes, passes == 3));
+                        twice.push_back(scene.bounds<double>(kind, kdop, rounding, passes, passes == 3));
+                    }
+                    force_kernel_target("");
+                    INFO(name_of(kind) << ", k " << kdop << ", passes " << passes);
+                    for (std::size_t i = 1; i < targets.size(); ++i) {
+                        CHECK((single[i] == single[0]));
+                        CHECK((twice[i] == twice[0]));
+                    }
+                    if (kind != Method::local && kind != Method::support && kind != Method::best)
+                        break; // no passes
+                }
+    CHECK_FALSE(force_kernel_target("none such"));
+    CHECK(kernel_target() == targets.front());
+}
+
+TEST_CASE("kernels agree with the readable form")
+{
+    const Scene scene;
+    BoundScratch scratch;
+    for (Method kind : {Method::convex, Method::eq12, Method::limited})
+        for (int kdop : {6, 26}) {
+            const auto fast = scene.bounds<double>(kind, kdop, Rounding::proven, 1), single = scene.bounds<float>(kind, kdop, Rounding::proven, 1);
+            const auto k = static_cast<std::size_t>(kdop);
+            std::vector<double> simple(k);
+            std::size_t place = 0;
+            for (const auto& frame : scene.e.frames)
+                for (std::size_t bv = 0; bv < scene.bvh.bvs.size(); ++bv) {
+                    bound_box(scene.bvh.rest(bv), frame, kind, Rounding::proven, axes_of(kdop), scratch, simple);
+                    for (std::size_t d = 0; d < k; ++d, ++place) {
+                        REQUIRE(fast[place] == Approx(simple[d]).margin(1e-13).epsilon(0));
+                        REQUIRE(single[place] == Approx(simple[d]).margin(1e-4).epsilon(0));
+                        REQUIRE(single[place] >= simple[d] - 1e-13);
+                    }
+                }
+        }
+}
+
+TEST_CASE("the linear kind reproduces an affine motion of weights that are affine, up to the points' slack")
+{
+    // Two nodes whose weights go linearly from 0 to 1 along x: the field is quadratic only where the maps differ by a rotation.
+    DeformableSurface surface;
+    for (std::uint32_t i = 0; i <= 8; ++i) {
+        surface.mesh.vertices.emplace_back(i / 8.0, 0.25 * (i % 2), 0);
+        surface.weights.node.insert(surface.weights.node.end(), {0, 1});
+        surface.weights.weight.insert(surface.weights.weight.end(), {1 - i / 8.0, i / 8.0});
+        surface.weights.row.push_back(2 * i + 2);
+        if (i >= 2)
+            surface.mesh.triangles.push_back({i - 2, i - 1, i});
+    }
+    surface.weights = to_dyadic({2, surface.weights.row, surface.weights.node, surface.weights.weight});
+    const Bvh bvh = build_bvh(surface, 100);
+    std::vector<AffineMap> maps{identity_map, identity_map};
+    maps[1].m[0][3] = 2; // node 1 moves by 2 along x: vertex i to 3i/8
+    const PackedBvh<double> packed = pack<double>(bvh, surface, choose_kinds(bvh, surface, Method::linear));
+    ProjectedMaps<double> projected;
+    project<double>(maps, packed.rest, 6, Rounding::proven, projected);
+    KernelScratch<double> scratch;
+    double supports[6];
+    bound_packed<double>({packed.bvs, packed.node, packed.value, &projected}, 0, 1, scratch, supports);
+    const double truth[6] = {3, 0, 0.25, 0, 0, 0};
+    for (int d = 0; d < 6; ++d) {
+        CHECK(supports[d] >= truth[d]);
+        CHECK(supports[d] == Approx(truth[d]).margin(1e-12));
+    }
+}
