@@ -12,6 +12,7 @@
 #include "experiments/corners.hpp"
 #include "experiments/fuzz/fuzz.hpp"
 #include "experiments/report/provenance.hpp"
+#include "experiments/scaling.hpp"
 #include "experiments/verify.hpp"
 #include "toolkit/bounds/kernel/bound_kernel.hpp"
 #include "toolkit/deform/motion.hpp"
@@ -23,7 +24,6 @@ using namespace cinch;
 
 constexpr int bad_input = 2;
 
-#ifdef CINCH_EXACT // so far every command needs the exact side
 // Descriptions begin in column 31 and CLI11 does not break lines; this does, for terminals 80 wide.
 std::string wrapped(const std::string& text)
 {
@@ -38,25 +38,6 @@ std::string wrapped(const std::string& text)
         column += (column ? 1 : 0) + word.size();
     }
     return out;
-}
-
-void add_input(CLI::App& command, InputOptions& o)
-{
-    command.add_option("INPUT", o.input,
-                       wrapped(fmt::format("a shape ({}), a mesh (.obj, .off, .ply, .stl) or a skinned character (.glb, .gltf)", fmt::join(shape_names(), ", "))))
-        ->option_text("[brain]");
-    auto option = [&](const char* name, auto& value, const std::string& description) { return command.add_option(name, value, wrapped(description)); };
-    option("--nodes", o.nodes, "simulation nodes sampled in the volume [the paper's number for a shape, 100 for a mesh]")
-        ->check(CLI::Range(1, 100000))->option_text("N");
-    option("--support", o.support, "reach of a simulation node, in fill distances [2]")->check(CLI::Range(1e-3, 1e3))->option_text("X");
-    option("--motion", o.motion, fmt::format("scripted motion: {} [strong]", motion_names))->option_text("NAME");
-    option("--weights", o.weights, "weights of a mesh's vertices as text, see below")->option_text("FILE");
-    option("--transforms", o.transforms, "transforms of the simulation nodes as text, see below")->option_text("FILE");
-    option("--clip", o.clip, "which clip of a character or of --transforms [the first]")->option_text("NAME");
-    option("--fps", o.fps, "frames per second sampled from a character's clip [30]")->check(CLI::Range(1e-3, 1e6))->option_text("X");
-    option("--frames", o.frames, "how many frames, evenly spread, the last one included [4 if scripted, else all]")
-        ->check(CLI::Range(1, 100000))->option_text("N");
-    option("--seed", o.seed, "seed of everything random [0]")->option_text("N");
 }
 
 // Accepts one of the names and nothing else, and says which there are.
@@ -77,14 +58,11 @@ template <class Enum> CLI::Validator one_of(std::vector<std::pair<std::string, E
         "");
 }
 
-void add_methods(CLI::App& command, Methods& methods)
+void add_output(CLI::App& command, OutputOptions& o)
 {
-    command.add_option_function<std::string>("--method", [&methods](const std::string& text) {
-        const auto named = named_methods(text);
-        if (!named)
-            throw CLI::ValidationError("--method", fmt::format("expected one or more, joined by '+', of {}, found '{}'", fmt::join(method_names, ", "), text));
-        methods = *named;
-    }, wrapped(fmt::format("{}, or several joined by '+', whose bounds are intersected [best]", fmt::join(method_names, ", "))))->option_text("NAME");
+    CLI::Option* json = command.add_flag("--json", o.json, "JSON Lines on standard output and nothing else");
+    command.add_flag("--csv", o.csv, "the same as comma-separated values")->excludes(json);
+    command.add_option("--plot", o.plot, wrapped("draw charts as SVG, by gnuplot"))->option_text("FILE.svg");
 }
 
 void add_arithmetic(CLI::App& command, Precision& precision, int& passes)
@@ -93,6 +71,52 @@ void add_arithmetic(CLI::App& command, Precision& precision, int& passes)
         ->transform(one_of<Precision>({{"float", Precision::float32}, {"double", Precision::float64}}))->option_text("NAME");
     command.add_option("--passes", passes, wrapped("evaluations of the dual function for local, support and best [1]"))
         ->check(CLI::Range(0, 64))->option_text("N");
+}
+
+void add_scaling(CLI::App& app, ScalingOptions& o)
+{
+    CLI::App& command = *app.add_subcommand("scaling", "time of one bound against simulation nodes and vertices (the paper's Table 1)");
+    add_arithmetic(command, o.precision, o.passes);
+    command.add_option("--seconds", o.seconds, wrapped("of measuring per size [1]"))->check(CLI::Range(0.001, 1e6))->option_text("X");
+    command.add_option("--seed", o.seed, wrapped("seed of everything random [0]"))->option_text("N");
+    add_output(command, o.output);
+    command.footer("Examples:\n"
+                   "  cinch scaling                        table and figures, about half a minute\n"
+                   "  cinch scaling --precision double --csv > table1.csv\n"
+                   "  cinch scaling --plot table1.svg\n"
+                   "\n"
+                   "All methods take turns on one core. Exit status: 0 measured, 2 bad usage,\n"
+                   "130 interrupted.");
+}
+
+#ifdef CINCH_EXACT
+void add_input(CLI::App& command, InputOptions& o)
+{
+    command.add_option("INPUT", o.input,
+                       wrapped(fmt::format("a shape ({}), a mesh (.obj, .off, .ply, .stl) or a skinned character (.glb, .gltf)", fmt::join(shape_names(), ", "))))
+        ->option_text("[brain]");
+    auto option = [&](const char* name, auto& value, const std::string& description) { return command.add_option(name, value, wrapped(description)); };
+    option("--nodes", o.nodes, "simulation nodes sampled in the volume [the paper's number for a shape, 100 for a mesh]")
+        ->check(CLI::Range(1, 100000))->option_text("N");
+    option("--support", o.support, "reach of a simulation node, in fill distances [2]")->check(CLI::Range(1e-3, 1e3))->option_text("X");
+    option("--motion", o.motion, fmt::format("scripted motion: {} [strong]", motion_names))->option_text("NAME");
+    option("--weights", o.weights, "weights of a mesh's vertices as text, see below")->option_text("FILE");
+    option("--transforms", o.transforms, "transforms of the simulation nodes as text, see below")->option_text("FILE");
+    option("--clip", o.clip, "which clip of a character or of --transforms [the first]")->option_text("NAME");
+    option("--fps", o.fps, "frames per second sampled from a character's clip [30]")->check(CLI::Range(1e-3, 1e6))->option_text("X");
+    option("--frames", o.frames, "how many frames, evenly spread, the last one included [4 if scripted, else all]")
+        ->check(CLI::Range(1, 100000))->option_text("N");
+    option("--seed", o.seed, "seed of everything random [0]")->option_text("N");
+}
+
+void add_methods(CLI::App& command, Methods& methods)
+{
+    command.add_option_function<std::string>("--method", [&methods](const std::string& text) {
+        const auto named = named_methods(text);
+        if (!named)
+            throw CLI::ValidationError("--method", fmt::format("expected one or more, joined by '+', of {}, found '{}'", fmt::join(method_names, ", "), text));
+        methods = *named;
+    }, wrapped(fmt::format("{}, or several joined by '+', whose bounds are intersected [best]", fmt::join(method_names, ", "))))->option_text("NAME");
 }
 
 void add_verify(CLI::App& app, VerifyOptions& o)
@@ -202,7 +226,9 @@ int main(int argc, char** argv)
     CLI::App app{"cinch: tight, proven bounding volumes for surfaces deformed by few simulation nodes", "cinch"};
     app.require_subcommand(1);
     app.set_version_flag("--version", describe(provenance(0, 0)).substr(0, describe(provenance(0, 0)).find(',')));
-    app.footer("'cinch COMMAND --help' says more, with examples.");
+    app.footer("'cinch COMMAND --help' says more, with examples. CINCH_TARGET=NAME forces the\n"
+               "instruction set of the kernels, for example CINCH_TARGET=AVX2.");
+    ScalingOptions scaling_options;
 #ifdef CINCH_EXACT
     VerifyOptions verify_options;
     CornersOptions corners_options;
@@ -211,6 +237,7 @@ int main(int argc, char** argv)
     add_corners(app, corners_options);
     add_fuzz(app, fuzz_options);
 #endif
+    add_scaling(app, scaling_options);
     const auto run = [&](const CLI::App& parsed) -> int {
 #ifdef CINCH_EXACT
         if (parsed.got_subcommand("verify"))
@@ -225,6 +252,8 @@ int main(int argc, char** argv)
             return fuzz(fuzz_options);
         }
 #endif
+        if (parsed.got_subcommand("scaling"))
+            return scaling(scaling_options);
         return parsed.get_subcommands().empty() ? bad_input : 0;
     };
     if (const char* target = std::getenv("CINCH_TARGET"); target && *target && !force_kernel_target(target)) {

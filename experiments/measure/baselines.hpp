@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "toolkit/bounds/aligned.hpp"
+#include "toolkit/deform/surface.hpp"
+#include "toolkit/hierarchy/bvh.hpp"
+
+namespace cinch {
+
+/// How the textbook bounds a transformed box: by its corners, as the paper defines it (Definition 1), or by its centre and axes, the
+/// shortcut that the paper mentions in §6.
+enum class TransformedBox { corners, axes };
+
+/// Eq. 12 as the paper's §5.4 lists it, by the book: an array of structs, scalar, no proof of its rounding. The yardstick.
+class Textbook {
+public:
+    Textbook(const Bvh& bvh, std::size_t bv, std::span<const AffineMap> maps);
+    /// Six supports, in the order of axes_of(6).
+    void bound(TransformedBox box, std::span<double> supports);
+
+private:
+    void bound_by_corners();
+    void bound_by_axes();
+
+    struct SimulationNode {
+        Eigen::Matrix3d a;
+        Eigen::Vector3d t;
+    };
+    struct Influence {
+        std::uint32_t node;
+        double l, h;
+    };
+    struct Extent {
+        double of[6];
+    };
+    std::vector<SimulationNode> nodes_;
+    std::vector<Influence> influences_;
+    std::vector<Extent> extents_;
+    Eigen::Vector3d centre_, half_;
+};
+
+/// The optimal AABB of a deformed surface: every vertex, evaluated in SIMD with fused multiply-adds, in T. What the bound replaces.
+template <class T> class OptimalBox {
+public:
+    OptimalBox(const DeformableSurface& surface, std::span<const AffineMap> maps);
+    /// Six supports, in the order of axes_of(6).
+    void bound(std::span<double> supports) const;
+
+private:
+    AlignedVector<T> column_;   // per simulation node 4 columns of 4
+    AlignedVector<T> position_; // per vertex 3
+    std::vector<std::uint32_t> row_;
+    struct Influence { // as the kernel reads it
+        std::uint32_t node;
+        T weight;
+    };
+    std::vector<Influence> influence_;
+};
+
+} // namespace cinch

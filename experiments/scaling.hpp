@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+
+#include "experiments/report/record_output.hpp"
+#include "toolkit/hierarchy/refit.hpp"
+
+namespace cinch {
+
+struct ScalingOptions {
+    Precision precision = Precision::float32;
+    int passes = 1;
+    double seconds = 1; ///< of measuring per size
+    std::uint64_t seed = 0;
+    OutputOptions output;
+};
+
+/// The paper's Table 1: time of one bound of the whole brain (six directions) for 3 numbers of vertices and 3 of simulation nodes, by
+/// every method, with the textbook's Eq. 12 and the optimal AABB in the same run. Returns the exit status.
+int scaling(const ScalingOptions& options);
+
+} // namespace cinch
