@@ -108,6 +108,7 @@ template <class Named> const Named& choose_clip(const std::vector<Named>& clips,
 
 void load_character(Input& input, const InputOptions& options)
 {
+    input.simulation_nodes_fixed = true;
     refuse_options(options, false, true, true);
     if (!options.weights.empty() || !options.transforms.empty())
         throw InputError("--weights and --transforms need a mesh (OBJ, OFF, PLY, STL)");
@@ -128,6 +129,7 @@ void load_character(Input& input, const InputOptions& options)
 
 void load_skin_text(Input& input, const InputOptions& options)
 {
+    input.simulation_nodes_fixed = true;
     refuse_options(options, false, true, false);
     if (options.weights.empty() || options.transforms.empty())
         throw InputError("--weights and --transforms go together");

@@ -13,6 +13,7 @@
 #include "experiments/fuzz/fuzz.hpp"
 #include "experiments/report/provenance.hpp"
 #include "experiments/scaling.hpp"
+#include "experiments/tightness.hpp"
 #include "experiments/verify.hpp"
 #include "toolkit/bounds/kernel/bound_kernel.hpp"
 #include "toolkit/deform/motion.hpp"
@@ -158,6 +159,35 @@ void add_verify(CLI::App& app, VerifyOptions& o)
                    "130 interrupted (results so far are printed).");
 }
 
+void add_tightness(CLI::App& app, TightnessOptions& o)
+{
+    CLI::App& command = *app.add_subcommand("tightness", "looseness against BVH level and simulation nodes, per method (the paper's Fig. 5)");
+    add_input(command, o.input);
+    command.add_option_function<std::vector<std::string>>("--methods", [&o](const std::vector<std::string>& texts) {
+        for (const std::string& text : texts) {
+            const auto named = named_methods(text);
+            if (!named)
+                throw CLI::ValidationError("--methods", fmt::format("expected names of {}, or several joined by '+', found '{}'", fmt::join(method_names, ", "), text));
+            o.methods.push_back(*named);
+        }
+    }, wrapped("which to compare [sphere,eq12,limited,local,support,linear,best]"))->delimiter(',')->option_text("NAME,...");
+    command.add_option("--sweep", o.nodes, wrapped("numbers of simulation nodes for the root's ratio [8,16,32,65,128,225,512]"))
+        ->delimiter(',')->check(CLI::Range(1, 100000))->option_text("N,...");
+    add_arithmetic(command, o.precision, o.passes);
+    command.add_option("--leaf", o.leaf, wrapped("most triangles per leaf [1]"))->check(CLI::Range(1, 1000000))->option_text("N");
+    command.add_option("--threads", o.threads, wrapped("threads [all cores]"))->check(CLI::Range(1, 1024))->option_text("N");
+    add_output(command, o.output);
+    command.footer("Without --motion a shape or mesh is measured under 'strong' and 'mild'.\n"
+                   "\n"
+                   "Examples:\n"
+                   "  cinch tightness                               the brain, about two minutes\n"
+                   "  cinch tightness hand.ply --nodes 200 --methods eq12,best --plot hand.svg\n"
+                   "  cinch tightness robot.glb --clip Robot_Dance --csv > robot.csv\n"
+                   "\n"
+                   "Exit status: 0 done, 1 a bound violated, 2 bad usage or input, 130 interrupted\n"
+                   "(results so far are printed).");
+}
+
 void add_corners(CLI::App& app, CornersOptions& o)
 {
     CLI::App& command = *app.add_subcommand("corners", "true corners of a weight space: count, list, exact maxima");
@@ -234,6 +264,8 @@ int main(int argc, char** argv)
     CornersOptions corners_options;
     add_verify(app, verify_options);
     FuzzOptions fuzz_options;
+    TightnessOptions tightness_options;
+    add_tightness(app, tightness_options);
     add_corners(app, corners_options);
     add_fuzz(app, fuzz_options);
 #endif
@@ -242,6 +274,8 @@ int main(int argc, char** argv)
 #ifdef CINCH_EXACT
         if (parsed.got_subcommand("verify"))
             return verify(verify_options);
+        if (parsed.got_subcommand("tightness"))
+            return tightness(tightness_options);
         if (parsed.got_subcommand("corners"))
             return corners(corners_options);
         if (parsed.got_subcommand("fuzz")) {
