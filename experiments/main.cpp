@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "experiments/corners.hpp"
+#include "experiments/cost/cost.hpp"
 #include "experiments/fuzz/fuzz.hpp"
 #include "experiments/report/provenance.hpp"
 #include "experiments/scaling.hpp"
@@ -188,6 +189,24 @@ void add_tightness(CLI::App& app, TightnessOptions& o)
                    "(results so far are printed).");
 }
 
+void add_cost(CLI::App& app, CostOptions& o)
+{
+    CLI::App& command = *app.add_subcommand("cost", "what accuracy costs in time: methods and arithmetics against looseness and guarantee");
+    add_input(command, o.input);
+    command.add_option("--kdops", o.kdops, wrapped("directions of the bounds [6,14,18,26]"))->delimiter(',')->check(CLI::IsMember({6, 14, 18, 26}))->option_text("K,...");
+    command.add_option("--seconds", o.seconds, wrapped("of measuring per k [2]"))->check(CLI::Range(0.001, 1e6))->option_text("X");
+    command.add_option("--leaf", o.leaf, wrapped("most triangles per leaf [16]"))->check(CLI::Range(1, 1000000))->option_text("N");
+    command.add_flag("!--this-input-only", o.all_scenes, wrapped("the gap of the dual evaluation for the input alone, not for every shipped shape"));
+    add_output(command, o.output);
+    command.footer("Examples:\n"
+                   "  cinch cost                             the brain; about a minute\n"
+                   "  cinch cost santa --kdops 6 --plot cost.svg\n"
+                   "  cinch cost robot.glb --this-input-only --json > cost.jsonl\n"
+                   "\n"
+                   "Exit status: 0 measured, 2 bad usage or input, 130 interrupted (results so far\n"
+                   "are printed).");
+}
+
 void add_corners(CLI::App& app, CornersOptions& o)
 {
     CLI::App& command = *app.add_subcommand("corners", "true corners of a weight space: count, list, exact maxima");
@@ -264,6 +283,8 @@ int main(int argc, char** argv)
     CornersOptions corners_options;
     add_verify(app, verify_options);
     FuzzOptions fuzz_options;
+    CostOptions cost_options;
+    add_cost(app, cost_options);
     TightnessOptions tightness_options;
     add_tightness(app, tightness_options);
     add_corners(app, corners_options);
@@ -274,6 +295,8 @@ int main(int argc, char** argv)
 #ifdef CINCH_EXACT
         if (parsed.got_subcommand("verify"))
             return verify(verify_options);
+        if (parsed.got_subcommand("cost"))
+            return cost(cost_options);
         if (parsed.got_subcommand("tightness"))
             return tightness(tightness_options);
         if (parsed.got_subcommand("corners"))

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/cost/cost.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include "experiments/measure/race.hpp"
+#include "experiments/report/interrupt.hpp"
+#include "experiments/report/number.hpp"
+#include "experiments/report/progress.hpp"
+#include "experiments/report/table.hpp"
+
+namespace cinch {
+namespace {
+
+struct Row {
+    int kdop;
+    std::string method, arithmetic, guarantee;
+    bool proven;
+    double ns, ratio_to_double, looseness;
+    double below, worst_below; ///< share of the supports below the exact value, and by how much at most, in widths; NaN: none known
+    bool pareto = false;
+};
+
+double radius(std::span<const double> s) { return 0.5 * std::hypot(s[0] + s[1], s[2] + s[3], s[4] + s[5]); }
+
+// Faster, tighter and proven, or as good in each and better in one: then the other need not be considered.
+bool dominates(const Row& a, const Row& b)
+{
+    const bool as_good = a.ns <= b.ns && a.looseness <= b.looseness * (1 + 1e-12) && a.proven >= b.proven;
+    return as_good && (a.ns < b.ns || a.looseness < b.looseness * (1 - 1e-12) || a.proven > b.proven);
+}
+
+std::vector<Row> measure(const CostSample& sample, int kdop, double seconds)
+{
+    const auto k = static_cast<std::size_t>(kdop);
+    std::vector<CostContestant> contestants = scalar_contestants(sample, kdop);
+    for (CostContestant& kernel : kernel_contestants(sample, kdop))
+        contestants.push_back(std::move(kernel));
+    // The exact value of a method over the BV's own box is that of its rational form; of the others the support of the vertices.
+    std::vector<double> truth(sample.bvh.bvs.size() * k), vertices;
+    refit(sample.bvh, sample.surface, sample.maps, {Method::vertices, kdop, Rounding::plain}, truth);
+    for (std::size_t bv : sample.bvs)
+        vertices.insert(vertices.end(), truth.begin() + static_cast<std::ptrdiff_t>(bv * k), truth.begin() + static_cast<std::ptrdiff_t>((bv + 1) * k));
+
+    std::vector<std::vector<double>> supports;
+    std::vector<std::function<void()>> calls;
+    for (const CostContestant& c : contestants) {
+        supports.emplace_back(sample.bvs.size() * k);
+        c.bound(supports.back());
+    }
+    for (std::size_t i = 0; i < contestants.size(); ++i)
+        calls.emplace_back([&, i] { contestants[i].bound(supports[i]); });
+    const std::vector<double> ns = race(calls, seconds);
+
+    auto find = [&](const std::string& method, const char* arithmetic) {
+        return static_cast<std::size_t>(std::find_if(contestants.begin(), contestants.end(), [&](const CostContestant& c) { return c.method == method && c.arithmetic == arithmetic; }) -
+                                        contestants.begin());
+    };
+    std::vector<Row> rows;
+    for (std::size_t i = 0; i < contestants.size(); ++i) {
+        const CostContestant& c = contestants[i];
+        const std::size_t exact = find(c.method, "rational"), plain = std::min(find(c.method, "double"), find(c.method, "double kernel"));
+        Row row{kdop, c.method, c.arithmetic, c.guarantee, c.proven, ns[i] / static_cast<double>(sample.bvs.size()), ns[i] / ns[plain], 0, NAN, NAN};
+        std::size_t below = 0, measured = 0;
+        double worst = 0;
+        for (std::size_t b = 0; b < sample.bvs.size(); ++b) {
+            const double whole = radius(std::span(vertices).subspan(b * k, k)), ratio = radius(std::span(supports[i]).subspan(b * k, k)) / whole;
+            if (whole > 0 && std::isfinite(ratio)) {
+                row.looseness += ratio;
+                ++measured;
+            }
+            for (std::size_t d = b * k; d < (b + 1) * k; ++d) {
+                const double value = exact < contestants.size() ? supports[exact][d] : vertices[d], width = vertices[d] + vertices[d ^ 1];
+                // The rational value is the least double above the exact one: below it is below the exact value, by a step or more.
+                if (exact < contestants.size() ? supports[i][d] < value : supports[i][d] < value - 1e-14 * std::abs(value)) {
+                    ++below;
+                    if (width > 0)
+                        worst = std::max(worst, (value - supports[i][d]) / width);
+                }
+            }
+        }
+        row.looseness /= static_cast<double>(measured);
+        row.below = static_cast<double>(below) / static_cast<double>(supports[i].size());
+        row.worst_below = worst;
+        rows.push_back(row);
+    }
+    for (Row& row : rows)
+        row.pareto = std::none_of(rows.begin(), rows.end(), [&](const Row& other) { return dominates(other, row); });
+    return rows;
+}
+
+std::string range_of(const DualGap& gap)
+{
+    if (gap.least_n == 1 && gap.most_n > 1000)
+        return "all";
+    return gap.most_n > 1000 ? fmt::format("> {}", gap.least_n - 1) : fmt::format("{} - {}", gap.least_n, gap.most_n);
+}
+
+std::vector<Figure> figures_of(const std::vector<DualGap>& gaps)
+{
+    std::vector<Figure> figures;
+    for (const DualGap& gap : gaps)
+        if (gap.method == Method::best && range_of(gap) == "all")
+            figures.push_back({fmt::format("{}: mean gap of 'best' after 1 pass, per cent", gap.input), fmt::format("{:.3f}", gap.gap[1]), "< 1", gap.gap[1] < 1});
+    return figures;
+}
+
+void print_tables(const Input& input, const CostSample& sample, const std::vector<Row>& rows, const std::vector<DualGap>& gaps)
+{
+    for (const std::string& line : input.report)
+        fmt::print("{}\n", line);
+    fmt::print("one BV of each of {} levels, last frame; one core\n", sample.bvs.size());
+    for (std::size_t first = 0; first < rows.size();) {
+        const int kdop = rows[first].kdop;
+        std::vector<std::vector<std::string>> lines;
+        for (; first < rows.size() && rows[first].kdop == kdop; ++first) {
+            const Row& r = rows[first];
+            lines.push_back({r.method, r.arithmetic, grouped(static_cast<std::size_t>(r.ns + 0.5)), fmt::format("{:.2f}", r.ratio_to_double), fmt::format("{:.4f}", r.looseness),
+                             r.below > 0 ? fmt::format("{:.0f} %", 100 * r.below) : "0", r.worst_below > 0 ? fmt::format("{:.0e}", r.worst_below) : "-", r.guarantee, r.pareto ? "*" : ""});
+        }
+        fmt::print("\n{}-DOP\n\n{}", kdop, table({"method", "arithmetic", "ns", "/ double", "ratio", "below", "worst", "guarantee", "Pareto"}, lines));
+    }
+    fmt::print("\nns: per BV, all k directions. / double: over plain double of the same method.\n"
+               "ratio: bound radius / true radius, mean. below, worst: how often, and by how much of\n"
+               "the width at most, a support fell below the exact value of its method (for local,\n"
+               "support, linear and best: below the vertices). Pareto: nothing else is as fast, as\n"
+               "tight and as well proven. The rational rows are the exact values, rounded up.\n\n"
+               "how far the dual evaluation is from the optimum, per cent of the bound's width\n\n");
+    std::vector<std::vector<std::string>> lines;
+    for (const DualGap& gap : gaps) {
+        std::vector<std::string> line{gap.input, std::string(name_of(gap.method)), range_of(gap), grouped(gap.bounds)};
+        for (const double g : gap.gap)
+            line.push_back(fmt::format("{:.3f}", g));
+        lines.push_back(line);
+    }
+    fmt::print("{}\n", table({"input", "method", "n", "bounds", "0 passes", "1", "2", "3", "4"}, lines));
+}
+
+} // namespace
+
+int cost(const CostOptions& options)
+{
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    const Input input = load_input(options.input);
+    std::vector<DualGap> gaps = dual_gaps(input, options.leaf);
+    if (options.all_scenes)
+        for (const char* shape : {"brain", "santa", "fish"})
+            if (input.name != shape) {
+                InputOptions what;
+                what.input = shape;
+                for (DualGap& gap : dual_gaps(load_input(what), options.leaf))
+                    gaps.push_back(std::move(gap));
+            }
+    const Bvh bvh = build_bvh(input.surface, options.leaf);
+    CostSample sample{input.surface, bvh, input.clip.frames.back(), {}};
+    for (std::size_t l = 0; l + 1 < bvh.level.size(); ++l)
+        sample.bvs.push_back((bvh.level[l] + bvh.level[l + 1]) / 2);
+    pin_to_one_core();
+    catch_interrupt();
+    std::vector<Row> rows;
+    {
+        Progress progress("measuring k-DOPs", options.kdops.size());
+        for (std::size_t i = 0; i < options.kdops.size() && !interrupted(); ++i) {
+            for (Row& row : measure(sample, options.kdops[i], options.seconds))
+                rows.push_back(std::move(row));
+            progress.done(i + 1);
+        }
+    }
+    const Provenance from = provenance(1, options.input.seed);
+    std::vector<nlohmann::ordered_json> records;
+    auto number = [](double x) { return std::isfinite(x) ? nlohmann::ordered_json(x) : nlohmann::ordered_json(); };
+    for (const Row& r : rows)
+        records.push_back({{"experiment", "cost"}, {"input", input.name}, {"method", r.method}, {"arithmetic", r.arithmetic}, {"kdop", r.kdop}, {"ns_per_bound", r.ns},
+                           {"ratio_to_double", r.ratio_to_double}, {"mean_ratio", number(r.looseness)}, {"below_exact", number(r.below)}, {"worst_below", number(r.worst_below)},
+                           {"guarantee", r.guarantee}, {"pareto", r.pareto}});
+    for (const DualGap& gap : gaps)
+        for (int passes = 0; passes < 5; ++passes)
+            records.push_back({{"experiment", "cost"}, {"input", gap.input}, {"method", name_of(gap.method)}, {"least_n", gap.least_n}, {"most_n", gap.most_n},
+                               {"passes", passes}, {"gap_percent", gap.gap[passes]}, {"bounds", gap.bounds}});
+    for (const Figure& f : figures_of(gaps))
+        records.push_back({{"experiment", "cost"}, {"figure", f.what}, {"measured", f.measured}, {"target", f.target}, {"reached", f.reached}});
+    print_records(records, options.output, from);
+    if (!options.output.plot.empty() && !rows.empty()) {
+        Chart chart{fmt::format("{}: what accuracy costs, {}-DOP", input.name, rows[0].kdop), "nanoseconds per BV", "bound radius / true radius", true, true, {}};
+        for (const Row& r : rows)
+            if (r.kdop == rows[0].kdop) {
+                auto series = std::find_if(chart.series.begin(), chart.series.end(), [&](const Series& s) { return s.name == r.arithmetic; });
+                if (series == chart.series.end())
+                    series = chart.series.insert(series, Series{r.arithmetic, {}, {}, true});
+                series->x.push_back(r.ns);
+                series->y.push_back(r.looseness);
+            }
+        plot({chart}, options.output.plot);
+    }
+    if (!options.output.json && !options.output.csv) {
+        print_tables(input, sample, rows, gaps);
+        print(figures_of(gaps));
+        fmt::print("\n{}\n", describe(from));
+    }
+    return interrupted() ? 130 : 0;
+}
+
+} // namespace cinch

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <functional>
+
+#include "experiments/input.hpp"
+#include "experiments/report/record_output.hpp"
+#include "toolkit/hierarchy/refit.hpp"
+
+namespace cinch {
+
+struct CostOptions {
+    InputOptions input;
+    std::vector<int> kdops = {6, 14, 18, 26};
+    double seconds = 2;     ///< of measuring per k
+    std::size_t leaf = 16;  ///< triangles
+    bool all_scenes = true; ///< the gap of the dual evaluation on every shipped shape, not on the input alone
+    OutputOptions output;
+};
+
+/// What accuracy costs in time: every method in every arithmetic, with looseness and what is guaranteed; and how far the dual
+/// evaluation stays from the optimum. Returns the exit status.
+int cost(const CostOptions& options);
+
+/// BVs on which arithmetics are compared: one of each level, in one frame.
+struct CostSample {
+    const DeformableSurface& surface;
+    const Bvh& bvh;
+    std::span<const AffineMap> maps;
+    std::vector<std::size_t> bvs;
+};
+
+/// A method in an arithmetic, as something to run: bounds all BVs of the sample, k supports each.
+struct CostContestant {
+    std::string method, arithmetic, guarantee;
+    bool proven = false;
+    std::function<void(std::span<double> supports)> bound;
+};
+/// Methods over the BV's own box (convex, eq12, limited) in scalar arithmetics from float to lazy exact numbers; "rational" is the
+/// exact value of each method.
+std::vector<CostContestant> scalar_contestants(const CostSample& sample, int kdop);
+/// All methods with kernels, in float and double, proven and not.
+std::vector<CostContestant> kernel_contestants(const CostSample& sample, int kdop);
+
+/// How far D after so many passes lies above the optimum, in per cent of the bound's width: means over directions and frames.
+struct DualGap {
+    std::string input;
+    Method method;
+    std::size_t least_n, most_n; ///< BVs with so many simulation nodes
+    std::size_t bounds;
+    double gap[5];               ///< after 0 to 4 passes
+};
+std::vector<DualGap> dual_gaps(const Input& input, std::size_t leaf);
+
+} // namespace cinch
