@@ -136,6 +136,7 @@ void add_verify(CLI::App& app, VerifyOptions& o)
     option("--certificate", o.certificate, "write a proof of every bound, for experiments/check_certificate.py; compressed if it ends in .gz")
         ->option_text("FILE");
     option("--vipr", o.vipr, "write single bounds of the last frame (first BV of each level) as VIPR files, for viprchk")->option_text("DIR");
+    command.add_flag("--stats", o.stats, wrapped("memory too: what the kernels stream, and all rest data"));
     command.add_flag("--volume", o.volume, wrapped("exact volumes too: bound over true k-DOP, and planes without a facet, on a sample of each level"));
     option("--sabotage", o.sabotage,
            "for tests: damage the bounds, to see that it is found: no-rounding (drop the error terms), swap-interval (swap one l and h), "

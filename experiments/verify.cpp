@@ -143,8 +143,11 @@ int verify(const VerifyOptions& options)
     const RefitOptions refit_options{options.methods, options.kdop, rounding, options.precision, options.passes, options.remember};
     Refitter refit(bvh, input.surface, refit_options);
     Ladder ladder(bvh, input.surface, refit_options);
+    const std::size_t packed_bytes = refit.bytes(), rest_bytes = bvh.bytes();
 
     VerifyTotals totals;
+    totals.packed_bytes = packed_bytes;
+    totals.rest_bytes = rest_bytes;
     totals.frames_wanted = input.clip.frames.size();
     for (std::size_t i = 0; i + 1 < bvh.level.size(); ++i) {
         LevelTotals level;

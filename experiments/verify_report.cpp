@@ -79,6 +79,10 @@ void print_table(const Input& input, const VerifyOptions& options, const VerifyT
         fmt::print("order of the ladder: limited <= eq12 <= convex broken {} times in {}\n", grouped(totals.ladder.broken), grouped(totals.ladder.compared));
     else
         fmt::print("order of the ladder: limited <= eq12 <= convex in all of {} comparisons\n", grouped(totals.ladder.compared));
+    if (options.stats)
+        fmt::print("memory: {:.1f} MB streamed by the kernels ({:.0f} bytes per BV), {:.1f} MB of rest data\n", static_cast<double>(totals.packed_bytes) / 1e6,
+                   rate(totals.packed_bytes, totals.bounds / std::max<std::size_t>(1, totals.frames * static_cast<std::size_t>(options.kdop))),
+                   static_cast<double>(totals.rest_bytes) / 1e6);
     if (totals.infinite)
         fmt::print("{} infinite: something overflows the arithmetic\n", counted(totals.infinite, "bound is", "bounds are"));
     fmt::print("{} bounds, {} proven, {} violated\n", grouped(totals.bounds), grouped(totals.proven), grouped(totals.violated));
@@ -128,6 +132,7 @@ void print_json(const Input& input, const VerifyOptions& options, const VerifyTo
                    {"bounds", totals.bounds}, {"proven", totals.proven}, {"violated", totals.violated}, {"infinite", totals.infinite},
                    {"ladder_compared", totals.ladder.compared}, {"ladder_broken", totals.ladder.broken},
                    {"filter_hit_rate", rate(totals.decided_by_filter, totals.bounds)}, {"seconds", totals.seconds},
+                   {"packed_bytes", totals.packed_bytes}, {"rest_bytes", totals.rest_bytes},
                    {"complete", totals.frames == totals.frames_wanted}, {"load_report", input.report},
                    {"version", from.version}, {"commit", from.commit}, {"compiler", from.compiler}, {"flags", from.flags},
                    {"cpu", from.cpu}, {"simd_target", from.simd}, {"threads", from.threads}, {"seed", from.seed}});

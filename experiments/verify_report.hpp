@@ -33,6 +33,7 @@ struct VerifyTotals {
     std::size_t infinite = 0; ///< of the proven ones
     std::size_t unbounded_nodes = 0; ///< transforms too large for the arithmetic, over all frames
     double seconds = 0;
+    std::size_t packed_bytes = 0, rest_bytes = 0; ///< what the kernels stream; all rest data, as the verifier reads it
     std::vector<LevelTotals> levels;
     LadderTotals ladder;
     std::vector<VolumeTotals> volumes; ///< per level; empty if not asked for

@@ -122,13 +122,14 @@ void print_tables(const Input& input, const CostSample& sample, const std::vecto
             lines.push_back({r.method, r.arithmetic, grouped(static_cast<std::size_t>(r.ns + 0.5)), fmt::format("{:.2f}", r.ratio_to_double), fmt::format("{:.4f}", r.looseness),
                              r.below > 0 ? fmt::format("{:.0f} %", 100 * r.below) : "0", r.worst_below > 0 ? fmt::format("{:.0e}", r.worst_below) : "-", r.guarantee, r.pareto ? "*" : ""});
         }
-        fmt::print("\n{}-DOP\n\n{}", kdop, table({"method", "arithmetic", "ns", "/ double", "ratio", "below", "worst", "guarantee", "Pareto"}, lines));
+        fmt::print("\n{}-DOP\n\n{}", kdop, table({"method", "arithmetic", "ns", "/ double", "ratio", "below", "worst", "proof", "opt"}, lines));
     }
     fmt::print("\nns: per BV, all k directions. / double: over plain double of the same method.\n"
                "ratio: bound radius / true radius, mean. below, worst: how often, and by how much of\n"
                "the width at most, a support fell below the exact value of its method (for local,\n"
-               "support, linear and best: below the vertices). Pareto: nothing else is as fast, as\n"
-               "tight and as well proven. The rational rows are the exact values, rounded up.\n\n"
+               "support, linear and best: below the vertices). proof: proven, exact, none, or\n"
+               "the error to expect. opt: Pareto-optimal, nothing else is as fast, as tight and as\n"
+               "well proven. interval: directed rounding. rational: the exact value, rounded up.\n\n"
                "how far the dual evaluation is from the optimum, per cent of the bound's width\n\n");
     std::vector<std::vector<std::string>> lines;
     for (const DualGap& gap : gaps) {

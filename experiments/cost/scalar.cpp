@@ -22,10 +22,15 @@ using Interval = CGAL::Interval_nt<false>;
 using Mpfr = boost::multiprecision::number<boost::multiprecision::mpfr_float_backend<38, boost::multiprecision::allocate_stack>, boost::multiprecision::et_off>; // 128 bits
 using Lazy = CGAL::Lazy_exact_nt<CGAL::Gmpq>;
 
-// The upper end as a double; of the exact numbers the least double above.
-template <class N> double upper(const N& x) { return static_cast<double>(x); }
+// The upper end as a double: the least one that is not below; for float the number itself.
+double upper(float x) { return static_cast<double>(x); }
+double upper(const Mpfr& x)
+{
+    const double d = static_cast<double>(x);
+    return Mpfr(d) < x ? std::nextafter(d, infinite) : d;
+}
 double upper(const Interval& x) { return x.sup(); }
-double upper(const DoubleDouble& x) { return x.high + x.low; }
+double upper(const DoubleDouble& x) { return x.low > 0 ? std::nextafter(x.high, infinite) : x.high; }
 double upper(const mpq_class& x)
 {
     const double d = x.get_d(); // truncated
@@ -165,16 +170,16 @@ std::vector<CostContestant> scalar_contestants(const CostSample& sample, int kdo
         };
         add("float", "none", false, [&sample, kdop, method](std::span<double> s) { bound_in<float>(sample, kdop, method, s); });
         add("double", "none", false, in_double(Rounding::plain));
-        add("double, proven rounding", "proven", true, in_double(Rounding::proven));
-        add("directed-rounding interval", "proven", true, [&sample, kdop, method](std::span<double> s) {
+        add("double, proven", "proven", true, in_double(Rounding::proven));
+        add("interval", "proven", true, [&sample, kdop, method](std::span<double> s) {
             const CGAL::Protect_FPU_rounding<true> upward;
             bound_in<Interval>(sample, kdop, method, s);
         });
-        add("double-double", "none, 1e-31", false, [&sample, kdop, method](std::span<double> s) { bound_in<DoubleDouble>(sample, kdop, method, s); });
-        add("MPFR 128", "none, 1e-38", false, [&sample, kdop, method](std::span<double> s) { bound_in<Mpfr>(sample, kdop, method, s); });
-        add("int128 on a grid", "proven", true, [&sample, kdop, method](std::span<double> s) { bound_on_grid(sample, kdop, method, s); });
+        add("double-double", "1e-31", false, [&sample, kdop, method](std::span<double> s) { bound_in<DoubleDouble>(sample, kdop, method, s); });
+        add("MPFR 128", "1e-38", false, [&sample, kdop, method](std::span<double> s) { bound_in<Mpfr>(sample, kdop, method, s); });
+        add("int128 grid", "proven", true, [&sample, kdop, method](std::span<double> s) { bound_on_grid(sample, kdop, method, s); });
         add("rational", "exact", true, [&sample, kdop, method](std::span<double> s) { bound_in<mpq_class>(sample, kdop, method, s); });
-        add("lazy exact", "exact, interval", true, [&sample, kdop, method](std::span<double> s) { bound_in<Lazy>(sample, kdop, method, s); });
+        add("lazy exact", "exact", true, [&sample, kdop, method](std::span<double> s) { bound_in<Lazy>(sample, kdop, method, s); });
     }
     return all;
 }

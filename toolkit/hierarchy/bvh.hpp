@@ -35,6 +35,11 @@ struct Bvh {
     std::vector<WeightModel> model;      ///< per entry of `node`
     std::vector<std::uint32_t> point;    ///< extreme vertices of the BVs
 
+    std::size_t bytes() const
+    {
+        auto size = [](const auto& all) { return all.size() * sizeof(all[0]); };
+        return size(bvs) + size(level) + size(triangle) + size(node) + size(l) + size(h) + size(local) + size(radius) + size(model) + size(point);
+    }
     RestBv rest(std::size_t bv) const
     {
         const Bv& b = bvs[bv];
