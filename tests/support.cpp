@@ -70,6 +70,8 @@ static Run run(const std::string& prefix, const std::string& arguments)
 
 Run cinch(const std::string& arguments) { return run("", arguments); }
 
+Run cinch_with(const std::string& setting, const std::string& arguments) { return run(setting + " ", arguments); }
+
 Run cinch_interrupted(const std::string& arguments, int seconds)
 {
     return run("timeout --preserve-status -s INT " + std::to_string(seconds) + " ", arguments);

@@ -33,6 +33,8 @@ struct Run {
 };
 /// Runs the program with these arguments (a shell line) and waits.
 Run cinch(const std::string& arguments);
+/// The same with a setting of the environment, NAME=value.
+Run cinch_with(const std::string& setting, const std::string& arguments);
 /// The same, with an interrupt (Ctrl-C) after so many seconds.
 Run cinch_interrupted(const std::string& arguments, int seconds);
 /// The same, killed outright after so many seconds.
