@@ -15,6 +15,7 @@ struct Frame {
     const Bvh& bvh;
     std::span<const AffineMap> maps;
     Methods methods;
+    RestShape shape;
     std::span<const Axis> axes;
     std::vector<Point<Interval>> exact_vertices; // enclosures
     std::vector<Vec3> computed_vertices;
@@ -31,7 +32,7 @@ struct BlockResult {
 class BvCheck {
 public:
     explicit BvCheck(const Frame& frame)
-        : frame_(frame), boxes_(frame.methods.within(box_methods)), weight_space_(frame.methods.within(box_methods | Method::local)),
+        : frame_(frame), boxes_(frame.methods.within(box_methods) && frame.shape == RestShape::aabb), weight_space_(frame.methods.within(box_methods | Method::local)),
           place_(frame.surface.weights.node_count)
     {
     }

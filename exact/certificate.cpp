@@ -66,13 +66,13 @@ private:
 
 } // namespace
 
-void certify_rest(const DeformableSurface& surface, const Bvh& bvh, Methods methods, int kdop, std::size_t frames, const LineSink& sink)
+void certify_rest(const DeformableSurface& surface, const Bvh& bvh, Methods methods, int kdop, std::size_t frames, const LineSink& sink, RestShape shape)
 {
     Line line(sink);
     line.raw(R"({"certificate":"cinch 1","vertices":)").integer(surface.mesh.vertices.size());
     line.raw(",\"triangles\":").integer(surface.mesh.triangles.size()).raw(",\"nodes\":").integer(surface.weights.node_count);
     line.raw(",\"bvs\":").integer(bvh.bvs.size()).raw(",\"frames\":").integer(frames).raw(",\"method\":\"").raw(name_of(methods));
-    line.raw(methods.within(box_methods) ? "\",\"weight_space\":true" : "\",\"weight_space\":false").raw(",\"kdop\":").integer(static_cast<std::size_t>(kdop)).raw("}").end();
+    line.raw(methods.within(box_methods) && shape == RestShape::aabb ? "\",\"weight_space\":true" : "\",\"weight_space\":false").raw(",\"kdop\":").integer(static_cast<std::size_t>(kdop)).raw("}").end();
     for (std::size_t k = 0; k < surface.mesh.vertices.size(); ++k) {
         const Weights::Row row = surface.weights.of(k);
         line.raw("{\"vertex\":").integer(k).raw(",\"rest\":").numbers({surface.mesh.vertices[k].data(), 3});
@@ -93,14 +93,14 @@ void certify_rest(const DeformableSurface& surface, const Bvh& bvh, Methods meth
 }
 
 void certify_frame(std::size_t frame, std::span<const AffineMap> maps, Methods methods, int kdop, std::span<const double> supports,
-                   const FrameVerdict& verdict, const LineSink& sink)
+                   const FrameVerdict& verdict, const LineSink& sink, RestShape shape)
 {
     Line line(sink);
     line.raw("{\"frame\":").integer(frame).raw(",\"maps\":").array(maps, [&](const AffineMap& map) { line.numbers({&map.m[0][0], 12}); }).raw("}").end();
     const auto k = static_cast<std::size_t>(kdop);
     for (std::size_t i = 0; i < supports.size() / k; ++i) {
         line.raw("{\"frame\":").integer(frame).raw(",\"bv\":").integer(i).raw(",\"bounds\":").numbers(supports.subspan(i * k, k));
-        if (methods.within(box_methods)) {
+        if (methods.within(box_methods) && shape == RestShape::aabb) {
             line.raw(",\"lambda\":[");
             for (std::size_t slot = i * k; slot < (i + 1) * k; ++slot) {
                 if (slot > i * k)

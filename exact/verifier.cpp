@@ -37,7 +37,7 @@ Verifier::Verifier(const DeformableSurface& surface, const Bvh& bvh) : surface_(
     });
 }
 
-FrameVerdict Verifier::check(std::span<const AffineMap> maps, Methods methods, int kdop, std::span<const double> supports) const
+FrameVerdict Verifier::check(std::span<const AffineMap> maps, Methods methods, int kdop, std::span<const double> supports, RestShape shape) const
 {
     const auto k = static_cast<std::size_t>(kdop);
     if (!is_kdop(kdop) || maps.size() != surface_.weights.node_count || supports.size() != bvh_.bvs.size() * k)
@@ -50,7 +50,7 @@ FrameVerdict Verifier::check(std::span<const AffineMap> maps, Methods methods, i
 
     require_default_arithmetic();
     const std::size_t vertex_count = surface_.mesh.vertices.size();
-    Frame frame{surface_, bvh_, maps, methods, axes_of(kdop), {}, {}};
+    Frame frame{surface_, bvh_, maps, methods, shape, axes_of(kdop), {}, {}};
     frame.computed_vertices.resize(vertex_count);
     evaluate(surface_.mesh.vertices, surface_.weights, maps, frame.computed_vertices);
     frame.exact_vertices.resize(vertex_count);

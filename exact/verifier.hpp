@@ -16,7 +16,7 @@ namespace cinch::exact {
 enum Statement : std::uint8_t {
     rest_data = 1,         ///< the BV's rest box and weight intervals hold all its vertices
     weight_space = 2,      ///< bound ≥ exact maximum over W' of exact extrema: of the deformed rest box for the box_methods, of each
-                           ///< simulation node's own vertices where `local` is with them; no statement for other methods
+                           ///< simulation node's own vertices for oriented boxes and where `local` is with them; no statement for other methods
     exact_vertices = 4,    ///< bound ≥ every vertex deformed in real arithmetic
     computed_vertices = 8, ///< bound ≥ every vertex as evaluate_vertex computes it; only +∞ contains a coordinate that is not finite
 };
@@ -65,7 +65,8 @@ public:
     const std::vector<std::string>& rest_data_faults() const { return faults_; }
 
     /// `supports` as refit() fills them for this frame. Results do not depend on the thread count.
-    FrameVerdict check(std::span<const AffineMap> maps, Methods methods, int kdop, std::span<const double> supports) const;
+    FrameVerdict check(std::span<const AffineMap> maps, Methods methods, int kdop, std::span<const double> supports,
+                       RestShape shape = RestShape::aabb) const;
 
 private:
     const DeformableSurface& surface_;

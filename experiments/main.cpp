@@ -128,6 +128,8 @@ void add_verify(CLI::App& app, VerifyOptions& o)
     auto option = [&](const char* name, auto& value, const std::string& description) { return command.add_option(name, value, wrapped(description)); };
     add_methods(command, o.methods);
     add_arithmetic(command, o.precision, o.passes);
+    option("--rest", o.rest_shape, "rest boxes of convex, eq12 and limited: aabb or obb [aabb]")
+        ->transform(one_of<RestShape>({{"aabb", RestShape::aabb}, {"obb", RestShape::obb}}))->option_text("SHAPE");
     command.add_flag("--remember", o.remember, wrapped("begin the search for lambda where the last frame left it"));
     option("--kdop", o.kdop, "directions of the bounds: 6, 14, 18 or 26 [6]")->check(CLI::IsMember({6, 14, 18, 26}))->option_text("K");
     option("--leaf", o.leaf, "most triangles per leaf [1]")->check(CLI::Range(1, 1000000))->option_text("N");

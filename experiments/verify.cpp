@@ -102,7 +102,7 @@ void add(const Bvh& bvh, const exact::FrameVerdict& frame, int kdop, VerifyTotal
 // In the last frame verified: the exact attribution of the root's bounds, and VIPR files of the first BV of every level.
 void explain_last_frame(const Input& input, const Bvh& bvh, const VerifyOptions& options, std::span<const double> supports, VerifyTotals& totals)
 {
-    if (totals.levels.empty() || options.sabotage != Sabotage::none)
+    if (totals.levels.empty() || options.sabotage != Sabotage::none || options.rest_shape == RestShape::obb)
         return; // damaged data need not have a proof
     const auto& maps = input.clip.frames[totals.frames - 1];
     auto place = [&](std::size_t bv, int direction) {
@@ -133,14 +133,14 @@ int verify(const VerifyOptions& options)
     const auto start = std::chrono::steady_clock::now();
     const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
-    if (!options.vipr.empty() && !options.methods.within(box_methods))
+    if (!options.vipr.empty() && (!options.methods.within(box_methods) || options.rest_shape == RestShape::obb))
         throw InputError("--vipr needs methods that bound over weights and the BV's own box: convex, corners, eq12, limited");
     const Input input = load_input(options.input);
     Bvh bvh = build_bvh(input.surface, options.leaf);
     damage(bvh, options.sabotage);
     const Rounding rounding = options.sabotage == Sabotage::no_rounding ? Rounding::plain : Rounding::proven;
     const exact::Verifier verifier(input.surface, bvh);
-    const RefitOptions refit_options{options.methods, options.kdop, rounding, options.precision, options.passes, options.remember};
+    const RefitOptions refit_options{options.methods, options.kdop, rounding, options.precision, options.passes, options.rest_shape, options.remember};
     Refitter refit(bvh, input.surface, refit_options);
     Ladder ladder(bvh, input.surface, refit_options);
     const std::size_t packed_bytes = refit.bytes(), rest_bytes = bvh.bytes();
@@ -160,7 +160,7 @@ int verify(const VerifyOptions& options)
     const exact::LineSink write = [&](std::string_view text) { certificate->line(text); };
     if (!options.certificate.empty()) {
         certificate.emplace(options.certificate);
-        exact::certify_rest(input.surface, bvh, options.methods, options.kdop, totals.frames_wanted, write);
+        exact::certify_rest(input.surface, bvh, options.methods, options.kdop, totals.frames_wanted, write, options.rest_shape);
     }
     if (options.volume)
         totals.volumes.resize(totals.levels.size());
@@ -172,9 +172,9 @@ int verify(const VerifyOptions& options)
             if (interrupted())
                 break;
             totals.unbounded_nodes += refit(maps, supports).unbounded_nodes;
-            const exact::FrameVerdict verdict = verifier.check(maps, options.methods, options.kdop, supports);
+            const exact::FrameVerdict verdict = verifier.check(maps, options.methods, options.kdop, supports, options.rest_shape);
             if (certificate)
-                exact::certify_frame(totals.frames, maps, options.methods, options.kdop, supports, verdict, write);
+                exact::certify_frame(totals.frames, maps, options.methods, options.kdop, supports, verdict, write, options.rest_shape);
             add(bvh, verdict, options.kdop, totals);
             totals.infinite += static_cast<std::size_t>(std::count_if(supports.begin(), supports.end(), [](double s) { return std::isinf(s); }));
             if (options.volume)

@@ -15,6 +15,7 @@ struct VerifyOptions {
     Precision precision = Precision::float32;
     int passes = 1;
     bool remember = false;
+    RestShape rest_shape = RestShape::aabb;
     bool stats = false; ///< memory too
     int kdop = 6;
     std::size_t leaf = 1; ///< triangles

@@ -94,7 +94,7 @@ void print_json(const Input& input, const VerifyOptions& options, const VerifyTo
     using nlohmann::json;
     auto base = [&] {
         return json{{"experiment", "verify"}, {"input", input.name}, {"method", name_of(options.methods)}, {"precision", name_of(options.precision)},
-                    {"kdop", options.kdop}};
+                    {"kdop", options.kdop}, {"rest", options.rest_shape == RestShape::obb ? "obb" : "aabb"}};
     };
     auto print = [](const json& record) { fmt::print("{}\n", record.dump(-1, ' ', false, json::error_handler_t::replace)); };
     for (std::size_t i = 0; i < totals.levels.size(); ++i) {

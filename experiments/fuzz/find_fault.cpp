@@ -95,13 +95,13 @@ std::string surface_fault(const FuzzCase& problem, Defect defect)
     const exact::Verifier verifier(surface, bvh);
     const Rounding rounding = defect == Defect::no_rounding ? Rounding::plain : Rounding::proven;
     const auto k = static_cast<std::size_t>(problem.kdop);
-    auto bounds_of = [&](Methods methods, Precision precision, int passes) {
+    auto bounds_of = [&](Methods methods, Precision precision, int passes, RestShape shape = RestShape::aabb) {
         std::vector<double> supports(k);
-        refit(seen, surface, problem.maps, {methods, problem.kdop, rounding, precision, passes}, supports);
+        refit(seen, surface, problem.maps, {methods, problem.kdop, rounding, precision, passes, shape}, supports);
         return supports;
     };
-    auto fault_of = [&](Methods methods, Precision precision, std::span<const double> supports) -> std::string {
-        const exact::FrameVerdict verdict = verifier.check(problem.maps, methods, problem.kdop, supports);
+    auto fault_of = [&](Methods methods, Precision precision, std::span<const double> supports, RestShape shape = RestShape::aabb) -> std::string {
+        const exact::FrameVerdict verdict = verifier.check(problem.maps, methods, problem.kdop, supports, shape);
         if (verdict.examples.empty())
             return {};
         const exact::Violation& v = verdict.examples.front();
@@ -122,6 +122,10 @@ std::string surface_fault(const FuzzCase& problem, Defect defect)
                 looser = supports;
             }
         }
+        if (wanted())
+            for (const Method method : {Method::convex, Method::eq12, Method::limited})
+                if (std::string fault = fault_of(method, precision, bounds_of(method, precision, 1, RestShape::obb), RestShape::obb); !fault.empty())
+                    return "oriented boxes: " + fault;
         for (const Method method : {Method::local, Method::support, Method::linear, Method::best}) {
             if (!wanted())
                 continue;

@@ -27,7 +27,7 @@ struct FuzzCase {
     std::size_t nodes() const { return is_surface() ? maps.size() : space.l.size(); }
 };
 
-inline constexpr std::uint32_t surface_trials = 15;
+inline constexpr std::uint32_t surface_trials = 17;
 
 /// The families that cases are drawn from, by name.
 std::vector<std::string_view> fuzz_families();

@@ -92,6 +92,20 @@ TEST_CASE("every method is proven for every k and frame, and the losses add up")
             }
 }
 
+TEST_CASE("oriented rest boxes are proven")
+{
+    const Scene scene;
+    const Verifier verifier(scene.e.surface, scene.bvh);
+    for (Method method : {Method::convex, Method::eq12, Method::limited})
+        for (Precision precision : {Precision::float32, Precision::float64})
+            for (int k : {6, 14, 18, 26}) {
+                std::vector<double> s(scene.bvh.bvs.size() * static_cast<std::size_t>(k));
+                refit(scene.bvh, scene.e.surface, scene.e.frames[2], {method, k, Rounding::proven, precision, 1, RestShape::obb}, s);
+                CHECK(violated(verifier.check(scene.e.frames[2], method, k, s, RestShape::obb)) == 0);
+                CHECK(s != scene.supports(method, k, 2, Rounding::proven, precision));
+            }
+}
+
 TEST_CASE("limited loses nothing at the corner, convex more than eq12")
 {
     const Scene scene;
@@ -192,6 +206,8 @@ TEST_CASE("mutation: local data and weight models that do not hold")
     CHECK(faults([](Bvh&) {}) == 0);
     const std::size_t place = 3; // an entry of the root
     CHECK(faults([&](Bvh& bvh) { bvh.local[place].half.x() *= 1 - 1e-13; }) == 6);
+    CHECK(faults([&](Bvh& bvh) { bvh.bvs[0].oriented.axis[0] *= 1 - 1e-12; }) == 6);
+    CHECK(faults([&](Bvh& bvh) { bvh.bvs[0].oriented.centre.y() += 1e-9; }) == 6);
     CHECK(faults([&](Bvh& bvh) { bvh.radius[place] *= 1 - 1e-13; }) == 6);
     CHECK(faults([&](Bvh& bvh) { bvh.model[place].residual *= 1 - 1e-12; }) == 6);
     CHECK(faults([&](Bvh& bvh) { bvh.model[place].moment.z() *= 1 - 1e-13; }) == 6);

@@ -173,7 +173,7 @@ TEST_CASE("every pass of the dual evaluation tightens the bound; a remembered λ
                 CHECK(width(s) <= width(looser));
             looser = s;
         }
-        Refitter remembering(bvh, e.surface, {method, 6, Rounding::proven, Precision::float64, 1, true});
+        Refitter remembering(bvh, e.surface, {method, 6, Rounding::proven, Precision::float64, 1, RestShape::aabb, true});
         std::vector<double> s(looser.size());
         for (int frame = 0; frame < 8; ++frame)
             remembering(e.frames[2], s);

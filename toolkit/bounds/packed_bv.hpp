@@ -28,6 +28,8 @@ template <class T> struct PackedBv {
     std::uint32_t also = 0;       ///< place of a second bound of the same BV to intersect with; 0 if there is none
     std::uint64_t first_value = 0;
     T centre[3] = {}, half[3] = {}; ///< rest box; used by kinds without local boxes
+    T axis[3][3] = {};              ///< and its axes instead of `half` if it is oriented
+    bool oriented = false;
     T pivot[3] = {};                ///< origin of the points and of the weight model
     T slack = 0;                    ///< max q·y over all vertices is at most that over the points + slack·‖q‖, also as computed
     T sum_l = 0, sum_r = 0;         ///< about; they only steer λ, but sum_l = 0 if and only if every l is

@@ -14,6 +14,15 @@ struct RestBox {
     Vec3 centre = Vec3::Zero(), half = Vec3::Zero();
 };
 
+/// The real parallelepiped centre + Σ β_i axis_i, |β_i| ≤ 1, contains its vertices. Its axes are nearly orthogonal: an OBB.
+struct OrientedBox {
+    Vec3 centre = Vec3::Zero();
+    Vec3 axis[3] = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+};
+
+/// Which rest box of a BV the methods without local boxes use.
+enum class RestShape : std::uint8_t { aabb, obb };
+
 /// w_j ≈ mean + gradient·y over a BV's vertices, y = x − pivot. Exactly, for every vertex: |w_j − mean − gradient·y| ≤ residual
 /// and |(w_j − mean) y_i| ≤ moment_i. The means of a BV are multiples of 2^-53 that sum to exactly 1.
 struct WeightModel {

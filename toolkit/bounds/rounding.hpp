@@ -60,6 +60,7 @@ inline double sum_error(double nodes, double absolute_sum) noexcept
 // and N its maximum over the BV's nodes; |q̄_s|, |θ̄| are at most 1.01 times their maxima, since Σm = 1 and sums of T's are within 1/100.
 //   stored q, θ: 2 and 3 double roundings of sums of ≤ 3, and one to T: 3u N;
 //   b̂ = (dq·c + dθ) ± |dq|·e with dq = q − q̄: 1 (difference) + 3 (fma) + 1 roundings on ≤ N + 1.01 N: γ₅·2.01 N < 10.3u N;
+//   over an oriented box |q·a_1| + |q·a_2| + |q·a_3| instead: 3 + 2 roundings, and a in T is off by u|a|: γ₇N + 3uN, X taking in Σ|a|;
 //   reference: q̄·z + θ̄ and the points' q̄·y, with |z| ≤ X and |y| ≤ 2X: 3 roundings on ≤ 3.03 N: 10u N. The slack has its own
 //   rounding in it, and sums of these are rounded up.
 // Together less than 24u N; 48u N leaves room for the rounding of N itself. Products underflow by ≤ η/2, at most 64 per node

@@ -79,6 +79,7 @@ Bvh build_bvh(const DeformableSurface& surface, std::size_t leaf_triangles)
     bvh.level.push_back(static_cast<std::uint32_t>(bvh.bvs.size()));
 
     set_boxes(surface, bvh);
+    orient_boxes(surface, bvh);
     fit_weight_models(surface, bvh);
     choose_points(surface, bvh);
     return bvh;

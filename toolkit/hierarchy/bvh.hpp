@@ -12,6 +12,7 @@ namespace cinch {
 /// One bounding volume in rest state: rest box, and where its triangles, children and influences lie in the Bvh.
 struct Bv {
     RestBox box;                                          ///< contains every rest vertex
+    OrientedBox oriented;                                 ///< and so does this one
     Vec3 pivot = Vec3::Zero();                            ///< mean of the rest vertices, see WeightModel
     double slack = 0;                                     ///< see RestBv::point
     std::uint32_t first_triangle = 0, triangle_count = 0; ///< in Bvh::triangle

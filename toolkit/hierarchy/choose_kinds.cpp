@@ -76,7 +76,7 @@ Trial attempt(const PackedBvh<double>& packed, std::span<const ProjectedMaps<dou
 // The start of λ that suits each BV best, for one kind, and what comes of it.
 Trial calibrate(const Bvh& bvh, const DeformableSurface& surface, Method kind, std::span<const ProjectedMaps<double>> frames, std::vector<double>& start)
 {
-    PackedBvh<double> packed = pack<double>(bvh, surface, std::vector<ChosenKind>(bvh.bvs.size(), {kind, {}, 0, 0}));
+    PackedBvh<double> packed = pack<double>(bvh, surface, std::vector<ChosenKind>(bvh.bvs.size(), {kind, {}, 0, 0, false}));
     start.assign(bvh.bvs.size(), 0.0);
     Trial best = attempt(packed, frames);
     if (kind == Method::linear)
@@ -99,10 +99,11 @@ Trial calibrate(const Bvh& bvh, const DeformableSurface& surface, Method kind, s
 
 } // namespace
 
-std::vector<ChosenKind> choose_kinds(const Bvh& bvh, const DeformableSurface& surface, Method method)
+std::vector<ChosenKind> choose_kinds(const Bvh& bvh, const DeformableSurface& surface, Method method, RestShape shape)
 {
-    std::vector<ChosenKind> chosen(bvh.bvs.size(), {method, {}, 0, 0});
-    if (bvh.bvs.empty() || method == Method::convex || method == Method::eq12 || method == Method::limited || method == Method::linear)
+    const bool box_only = box_methods.contains(method);
+    std::vector<ChosenKind> chosen(bvh.bvs.size(), {method, {}, 0, 0, box_only && shape == RestShape::obb});
+    if (bvh.bvs.empty() || box_only || method == Method::linear)
         return chosen;
     std::mt19937_64 random(20080101);
     const RestBox& root = bvh.bvs[0].box;
@@ -138,13 +139,13 @@ std::vector<ChosenKind> choose_kinds(const Bvh& bvh, const DeformableSurface& su
         for (std::size_t k = 1; k < 3; ++k)
             if (trial[k].width[i] < trial[best].width[i])
                 best = k;
-        chosen[i] = {kinds[best], {}, start[best][i], 0};
+        chosen[i] = {kinds[best], {}, start[best][i], 0, false};
         double width = worth_twice * trial[best].width[i];
         for (std::size_t a = 0; a < 3; ++a)
             for (std::size_t b = a + 1; b < 3; ++b)
                 if (const double w = both(a, b); w < width) {
                     width = w;
-                    chosen[i] = {kinds[a], kinds[b], start[a][i], start[b][i]};
+                    chosen[i] = {kinds[a], kinds[b], start[a][i], start[b][i], false};
                 }
     }
     return chosen;

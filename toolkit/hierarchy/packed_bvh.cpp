@@ -53,7 +53,7 @@ template <class T> class Packer {
 public:
     Packer(const DeformableSurface& surface, PackedBvh<T>& out) : surface_(surface), out_(out) {}
 
-    void pack(const RestBv& rest, Method kind, double start)
+    void pack(const RestBv& rest, Method kind, double start, const OrientedBox* oriented)
     {
         if (sizeof(T) == 4 && rest.node.size() > most_nodes_in_float)
             throw std::length_error("pack: too many simulation nodes in a BV for float");
@@ -68,6 +68,8 @@ public:
             out_.node.push_back(rest.node[j]);
         out_.node.resize(bv_.first_node + blocks_of(rest.node.size()) * block_lanes, out_.node.back());
         put_box(rest.box, out_.rest.origin, bv_.centre, bv_.half);
+        if (oriented)
+            put_oriented(*oriented);
         if (kind == Method::support || kind == Method::linear)
             put_points(rest);
         if (kind == Method::linear)
@@ -92,6 +94,23 @@ private:
                 to.push_back(static_cast<std::uint32_t>(j));
         }
         order_.insert(order_.end(), others.begin(), others.end());
+    }
+
+    // The centre's error d in the direction of an axis a is within Σ d_s of it, so a grows by that; a in T is off by u|a| (rounding.hpp).
+    void put_oriented(const OrientedBox& box)
+    {
+        bv_.oriented = true;
+        double off = 0;
+        for (int s = 0; s < 3; ++s) {
+            const Shifted<T> c = shifted<T>(box.centre[s], out_.rest.origin[s]);
+            bv_.centre[s] = c.value;
+            off = sum_up(off, c.off);
+        }
+        for (int i = 0; i < 3; ++i) {
+            const double length = box.axis[i].norm(), grown = off == 0 ? 1 : succ(1 + succ(off / length) * (1 + 32 * unit_roundoff));
+            for (int s = 0; s < 3; ++s)
+                bv_.axis[i][s] = static_cast<T>(box.axis[i][s] * grown);
+        }
     }
 
     // x − o = pivot + y + an error that goes to the slack.
@@ -236,7 +255,7 @@ Vec3 rest_origin(const RestBox& root)
 
 } // namespace
 
-RestExtent rest_extent(const Bvh& bvh, const DeformableSurface& surface)
+RestExtent rest_extent(const Bvh& bvh, const DeformableSurface& surface, RestShape shape)
 {
     RestExtent rest;
     if (bvh.bvs.empty())
@@ -245,6 +264,9 @@ RestExtent rest_extent(const Bvh& bvh, const DeformableSurface& surface)
     for (const Bv& bv : bvh.bvs) {
         // Room for rounding to float and for local boxes, which may reach past the BV's by their own; pivots lie inside.
         rest.about_origin = rest.about_origin.cwiseMax(((bv.box.centre - rest.origin).cwiseAbs() + bv.box.half) * (1 + 0x1p-20));
+        if (shape == RestShape::obb)
+            rest.about_origin = rest.about_origin.cwiseMax(((bv.oriented.centre - rest.origin).cwiseAbs() + bv.oriented.axis[0].cwiseAbs() +
+                                                            bv.oriented.axis[1].cwiseAbs() + bv.oriented.axis[2].cwiseAbs()) * (1 + 0x1p-18));
         rest.influences = std::max(rest.influences, static_cast<double>(bv.vertex_influences));
     }
     for (const Vec3& x : surface.mesh.vertices)
@@ -255,14 +277,14 @@ RestExtent rest_extent(const Bvh& bvh, const DeformableSurface& surface)
 template <class T> PackedBvh<T> pack(const Bvh& bvh, const DeformableSurface& surface, std::span<const ChosenKind> kinds)
 {
     PackedBvh<T> out;
-    out.rest = rest_extent(bvh, surface);
+    out.rest = rest_extent(bvh, surface, !kinds.empty() && kinds[0].oriented ? RestShape::obb : RestShape::aabb);
     Packer<T> packer(surface, out);
     for (std::size_t i = 0; i < bvh.bvs.size(); ++i)
-        packer.pack(bvh.rest(i), kinds[i].kind, kinds[i].start);
+        packer.pack(bvh.rest(i), kinds[i].kind, kinds[i].start, kinds[i].oriented ? &bvh.bvs[i].oriented : nullptr);
     for (std::size_t i = 0; i < bvh.bvs.size(); ++i)
         if (kinds[i].also) {
             out.bvs[i].also = static_cast<std::uint32_t>(out.bvs.size());
-            packer.pack(bvh.rest(i), *kinds[i].also, kinds[i].also_start);
+            packer.pack(bvh.rest(i), *kinds[i].also, kinds[i].also_start, nullptr);
         }
     out.bvs.shrink_to_fit();
     out.node.shrink_to_fit();

@@ -24,15 +24,16 @@ struct ChosenKind {
     Method kind = Method::support;
     std::optional<Method> also;
     double start = 0, also_start = 0;
+    bool oriented = false; ///< over the oriented box; convex, eq12 and limited only
 };
 
 /// Coordinates of the packed rest data: any origin will do, but the same for all that share a frame's projected maps.
-RestExtent rest_extent(const Bvh& bvh, const DeformableSurface& surface);
+RestExtent rest_extent(const Bvh& bvh, const DeformableSurface& surface, RestShape shape = RestShape::aabb);
 
 /// For convex, eq12, limited and linear that kind; for local and support that kind with λ begun where it did best on synthetic
 /// deformations; for `best` whichever of linear, support and local did best there, or two of them where that is worth the time.
 /// The deformations are random quadratic ones, each node moving as at the mean of the vertices it influences. Deterministic.
-std::vector<ChosenKind> choose_kinds(const Bvh& bvh, const DeformableSurface& surface, Method method);
+std::vector<ChosenKind> choose_kinds(const Bvh& bvh, const DeformableSurface& surface, Method method, RestShape shape = RestShape::aabb);
 
 /// Rounds everything outward to T. Throws std::length_error for float and a BV of more than 65,536 simulation nodes.
 template <class T> PackedBvh<T> pack(const Bvh& bvh, const DeformableSurface& surface, std::span<const ChosenKind> kinds);

@@ -37,7 +37,7 @@ template <class T> struct KernelPart {
     tbb::enumerable_thread_specific<KernelScratch<T>> scratch;
 
     KernelPart(const Bvh& bvh, const DeformableSurface& surface, Method method, const RefitOptions& options)
-        : packed(pack<T>(bvh, surface, choose_kinds(bvh, surface, method))), bvs(bvh.bvs.size())
+        : packed(pack<T>(bvh, surface, choose_kinds(bvh, surface, method, options.rest_shape))), bvs(bvh.bvs.size())
     {
         if (options.remember)
             remembered.assign(packed.bvs.size() * static_cast<std::size_t>(options.kdop), std::numeric_limits<T>::quiet_NaN());

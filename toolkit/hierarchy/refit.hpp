@@ -21,6 +21,7 @@ struct RefitOptions {
     Rounding rounding = Rounding::proven;
     Precision precision = Precision::float32; ///< of the methods that have kernels: all but sphere, corners and vertices
     int passes = 1;                 ///< evaluations of D for local, support and best
+    RestShape rest_shape = RestShape::aabb; ///< for convex, eq12 and limited
     bool remember = false;          ///< λ of local, support and best begins where the last frame left it
 };
 

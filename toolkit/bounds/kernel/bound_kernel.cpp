@@ -114,7 +114,12 @@ void bound_by_duality(const KernelInput<T>& in, const PackedBv<T>& bv, T* rememb
         extrema<T, kAxes, Boxes::less_reference, false>(bv, *in.maps, node, block, out.reference, scratch.transposed.data(), b, e);
         break;
     case Method::local: extrema<T, kAxes, Boxes::local, false>(bv, *in.maps, node, block, out.reference, nullptr, b, e); break;
-    default: extrema<T, kAxes, Boxes::common, true>(bv, *in.maps, node, block, out.reference, nullptr, b, e); break;
+    default:
+        if (bv.oriented)
+            extrema<T, kAxes, Boxes::oriented, true>(bv, *in.maps, node, block, out.reference, nullptr, b, e);
+        else
+            extrema<T, kAxes, Boxes::common, true>(bv, *in.maps, node, block, out.reference, nullptr, b, e);
+        break;
     }
     out.error = e.error;
     std::copy_n(&e.greatest[0][0], 2 * kAxes, &out.value[0][0]);

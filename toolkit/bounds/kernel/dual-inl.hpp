@@ -12,8 +12,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace cinch::HWY_NAMESPACE {
 
-/// Which boxes the extrema are over: the BV's, each node's cut by its ball, or each node's with the reference map taken off.
-enum class Boxes { common, local, less_reference };
+/// Which boxes the extrema are over: the BV's, its oriented one, each node's cut by its ball, or each node's with the reference map taken off.
+enum class Boxes { common, oriented, local, less_reference };
 
 /// What one pass over the extrema leaves, per side and axis.
 template <class T, std::size_t kAxes> struct Extrema {
@@ -27,7 +27,8 @@ template <class T, std::size_t kAxes, Boxes kBoxes, bool kSecond>
 void extrema(const PackedBv<T>& bv, const ProjectedMaps<T>& maps, const std::uint32_t* node, const T* block, const AxisMap<T, kAxes>& reference,
              const T* transposed, T* b, Extrema<T, kAxes>& out)
 {
-    constexpr std::size_t rows = PackedBv<T>::rows(kBoxes == Boxes::common ? Method::limited : Method::local);
+    constexpr bool kCommon = kBoxes == Boxes::common || kBoxes == Boxes::oriented;
+    constexpr std::size_t rows = PackedBv<T>::rows(kCommon ? Method::limited : Method::local);
     Lanes<T> most = Lanes<T>::all(0), first[2][kAxes], other[2][kAxes]; // greatest; second-greatest, or Σ r p and Σ r w
     for (std::size_t a = 0; a < kAxes; ++a) {
         first[0][a] = first[1][a] = Lanes<T>::all(-infinity_of<T>);
@@ -43,14 +44,20 @@ void extrema(const PackedBv<T>& bv, const ProjectedMaps<T>& maps, const std::uin
         auto row = [&](std::size_t n) CINCH_FLATTEN { return Lanes<T>::load(block + n * block_lanes); };
         Lanes<T> c[3], e[3];
         for (std::size_t s = 0; s < 3; ++s) {
-            c[s] = kBoxes == Boxes::common ? Lanes<T>::all(bv.centre[s]) : row(2 + s);
-            e[s] = kBoxes == Boxes::common ? Lanes<T>::all(bv.half[s]) : row(5 + s);
+            c[s] = kCommon ? Lanes<T>::all(bv.centre[s]) : row(2 + s);
+            e[s] = kCommon ? Lanes<T>::all(bv.half[s]) : row(5 + s);
         }
         if (!kSecond && (i & passed_over) == 0)
             ranges = ranges + row(1);
         auto take = [&](std::size_t a, const Lanes<T>(&q)[4], const Lanes<T>* norm) CINCH_FLATTEN {
             const auto p = fma(q[0], c[0], fma(q[1], c[1], fma(q[2], c[2], q[3])));
             auto w = fma(magnitude(q[0]), e[0], fma(magnitude(q[1]), e[1], magnitude(q[2]) * e[2]));
+            if constexpr (kBoxes == Boxes::oriented) {
+                auto along = [&](const T(&axis)[3]) CINCH_FLATTEN {
+                    return magnitude(fma(q[0], Lanes<T>::all(axis[0]), fma(q[1], Lanes<T>::all(axis[1]), q[2] * Lanes<T>::all(axis[2]))));
+                };
+                w = (along(bv.axis[0]) + along(bv.axis[1])) + along(bv.axis[2]);
+            }
             if constexpr (kBoxes == Boxes::local)
                 w = less(w, norm[a] * row(8));
             const Lanes<T> side[2] = {w + p, w - p};
