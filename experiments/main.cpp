@@ -77,7 +77,7 @@ void add_arithmetic(CLI::App& command, Precision& precision, int& passes)
 
 void add_scaling(CLI::App& app, ScalingOptions& o)
 {
-    CLI::App& command = *app.add_subcommand("scaling", "time of one bound against simulation nodes and vertices (the paper's Table 1)");
+    CLI::App& command = *app.add_subcommand("scaling", "time by simulation nodes and vertices (Table 1)");
     add_arithmetic(command, o.precision, o.passes);
     command.add_option("--seconds", o.seconds, wrapped("of measuring per size [1]"))->check(CLI::Range(0.001, 1e6))->option_text("X");
     command.add_option("--seed", o.seed, wrapped("seed of everything random [0]"))->option_text("N");
@@ -123,7 +123,7 @@ void add_methods(CLI::App& command, Methods& methods)
 
 void add_verify(CLI::App& app, VerifyOptions& o)
 {
-    CLI::App& command = *app.add_subcommand("verify", "prove every bound of every BV, direction and frame in exact arithmetic");
+    CLI::App& command = *app.add_subcommand("verify", "prove every bound in exact arithmetic");
     add_input(command, o.input);
     auto option = [&](const char* name, auto& value, const std::string& description) { return command.add_option(name, value, wrapped(description)); };
     add_methods(command, o.methods);
@@ -165,7 +165,7 @@ void add_verify(CLI::App& app, VerifyOptions& o)
 
 void add_tightness(CLI::App& app, TightnessOptions& o)
 {
-    CLI::App& command = *app.add_subcommand("tightness", "looseness against BVH level and simulation nodes, per method (the paper's Fig. 5)");
+    CLI::App& command = *app.add_subcommand("tightness", "looseness by BVH level and simulation nodes (Fig. 5)");
     add_input(command, o.input);
     command.add_option_function<std::vector<std::string>>("--methods", [&o](const std::vector<std::string>& texts) {
         for (const std::string& text : texts) {
@@ -194,7 +194,7 @@ void add_tightness(CLI::App& app, TightnessOptions& o)
 
 void add_cost(CLI::App& app, CostOptions& o)
 {
-    CLI::App& command = *app.add_subcommand("cost", "what accuracy costs in time: methods and arithmetics against looseness and guarantee");
+    CLI::App& command = *app.add_subcommand("cost", "what accuracy costs in time");
     add_input(command, o.input);
     command.add_option("--kdops", o.kdops, wrapped("directions of the bounds [6,14,18,26]"))->delimiter(',')->check(CLI::IsMember({6, 14, 18, 26}))->option_text("K,...");
     command.add_option("--seconds", o.seconds, wrapped("of measuring per k [2]"))->check(CLI::Range(0.001, 1e6))->option_text("X");
@@ -212,7 +212,7 @@ void add_cost(CLI::App& app, CostOptions& o)
 
 void add_corners(CLI::App& app, CornersOptions& o)
 {
-    CLI::App& command = *app.add_subcommand("corners", "true corners of a weight space: count, list, exact maxima");
+    CLI::App& command = *app.add_subcommand("corners", "true corners of a weight space, and maxima");
     auto option = [&](const char* name, auto& value, const std::string& description) { return command.add_option(name, value, wrapped(description)); };
     option("CASE", o.files, "case files, see below")->required()->option_text("FILE...");
     command.add_flag("--json", o.json, "JSON Lines on standard output and nothing else");
@@ -233,7 +233,7 @@ void add_corners(CLI::App& app, CornersOptions& o)
 
 void add_fuzz(CLI::App& app, FuzzOptions& o)
 {
-    CLI::App& command = *app.add_subcommand("fuzz", "compare every bounding method with the exact side on random hard cases");
+    CLI::App& command = *app.add_subcommand("fuzz", "every method against the exact side, random cases");
     auto option = [&](const char* name, auto& value, const std::string& description) { return command.add_option(name, value, wrapped(description)); };
     option("--seconds", o.seconds, "stop after so many seconds")->check(CLI::Range(0.0, 1e9))->option_text("X");
     option("--cases", o.cases, "stop after so many cases [100,000 if no --seconds]")->option_text("N");
@@ -275,7 +275,7 @@ void add_fuzz(CLI::App& app, FuzzOptions& o)
 
 int main(int argc, char** argv)
 {
-    CLI::App app{"cinch: tight, proven bounding volumes for surfaces deformed by few simulation nodes", "cinch"};
+    CLI::App app{"cinch: tight, proven bounds for surfaces deformed by few simulation nodes", "cinch"};
     app.require_subcommand(1);
     app.set_version_flag("--version", describe(provenance(0, 0)).substr(0, describe(provenance(0, 0)).find(',')));
     app.footer("'cinch COMMAND --help' says more, with examples. CINCH_TARGET=NAME forces the\n"

@@ -42,6 +42,7 @@ void print_table(const Input& input, const VerifyOptions& options, const VerifyT
     fmt::print("method {} in {}, {}-DOP, at most {} per leaf; {} of {}\n\n", name_of(options.methods), name_of(options.precision), options.kdop,
                counted(options.leaf, "triangle", "triangles"), totals.frames, counted(totals.frames_wanted, "frame", "frames"));
 
+    const bool boxes = options.methods.within(box_methods) && options.rest_shape == RestShape::aabb;
     std::vector<std::vector<std::string>> rows;
     for (std::size_t i = 0; i < totals.levels.size(); ++i) {
         const LevelTotals& level = totals.levels[i];
@@ -49,12 +50,13 @@ void print_table(const Input& input, const VerifyOptions& options, const VerifyT
         auto share = [&](double x) { return level.measured ? fmt::format("{:.3f}", x) : "-"; };
         rows.push_back({std::to_string(i), grouped(level.bvs), fmt::format("{:.1f}", mean.n), grouped(level.proven), grouped(level.violated),
                         share(mean.ratio), share(level.ratio_max), share(mean.box), share(mean.interval), share(mean.corner),
-                        level.measured ? fmt::format("{:.0e}", mean.rounding) : "-"});
+                        level.measured && (boxes || options.methods == Method::vertices) ? fmt::format("{:.0e}", mean.rounding) : "-"});
     }
-    fmt::print("{}\n", table({"level", "BVs", "n", "proven", "violated", "ratio", "max", "box", "interval", "corner", "rounding"}, rows));
+    fmt::print("{}\n", table({"level", "BVs", "n", "proven", "violated", "ratio", "max", "box", "interval", boxes ? "corner" : "method", "rounding"}, rows));
     fmt::print("n: simulation nodes per BV, mean. ratio, max: bound radius / true radius.\n"
-               "box, interval, corner, rounding: what the bound gives away per direction, and\n"
-               "why, as a mean share of the true radius.\n\n");
+               "box, interval, {}: what the bound gives away per direction, and\n"
+               "why, as a mean share of the true radius{}.\n\n", boxes ? "corner, rounding" : "method",
+               boxes ? "" : "; method: all that is neither, negative where\nthe method knows more of the weights than their intervals");
 
     if (!totals.volumes.empty()) {
         std::vector<std::vector<std::string>> volumes;
