@@ -44,14 +44,17 @@ Vec3 body_origin(std::span<const AffineMap> maps, const RestExtent& rest)
     Vec3 origin = Vec3::Zero();
     if (!(grid > 0) || !std::isfinite(grid))
         return origin;
-    std::vector<double> image(maps.size());
+    std::vector<double> image;
     for (int r = 0; r < 3; ++r) {
-        for (std::size_t j = 0; j < maps.size(); ++j) {
-            const auto& m = maps[j].m[r];
-            image[j] = ((m[0] * rest.origin[0] + m[1] * rest.origin[1]) + m[2] * rest.origin[2]) + m[3];
-            if (!std::isfinite(image[j]))
-                image[j] = 0;
+        image.clear();
+        for (const AffineMap& map : maps) {
+            const auto& m = map.m[r];
+            const double x = ((m[0] * rest.origin[0] + m[1] * rest.origin[1]) + m[2] * rest.origin[2]) + m[3];
+            if (std::isfinite(x))
+                image.push_back(x);
         }
+        if (image.empty())
+            continue;
         const auto middle = image.begin() + static_cast<std::ptrdiff_t>(image.size() / 2);
         std::nth_element(image.begin(), middle, image.end());
         const double cells = *middle / grid;
@@ -91,7 +94,7 @@ void project(std::span<const AffineMap> maps, const RestExtent& rest, int kdop, 
                              shifted_row(maps[j].m[2], rest.origin, out.origin[2])};
         T* const q = out.value.data() + j * record;
         double error = 0;
-        bool bounded = true;
+        bool bounded = rest.about_origin.maxCoeff() <= static_cast<double>(magnitude_limit<T>); // else rest data may overflow T
         for (std::size_t a = 0; a < axes.size(); ++a) {
             double along[4] = {0, 0, 0, 0}, magnitude[4] = {0, 0, 0, 0}, lost = 0, world = 0;
             for (std::size_t r = 0; r < 3; ++r) {
@@ -117,6 +120,8 @@ void project(std::span<const AffineMap> maps, const RestExtent& rest, int kdop, 
             const double x = static_cast<double>(q[4 * a]), y = static_cast<double>(q[4 * a + 1]), z = static_cast<double>(q[4 * a + 2]);
             q[4 * axes.size() + a] = rounded_up<T>(safe_norm(x, y, z) * (1 + 8 * unit_roundoff));
             bounded &= about <= static_cast<double>(magnitude_limit<T>); // false for NaN
+            for (double component : along) // whatever it meets may be 0, which would hide it from `about`
+                bounded &= std::abs(component) <= static_cast<double>(magnitude_limit<T>);
             error = std::max(error, node_error<T>(about, rest.about_origin.sum(), lost) + evaluation_error(rest.influences, world));
         }
         T& charge = q[record - 1];

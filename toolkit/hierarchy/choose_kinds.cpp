@@ -65,7 +65,7 @@ Trial attempt(const PackedBvh<double>& packed, std::span<const ProjectedMaps<dou
     parallel_blocks(packed.bvs.size(), 64, [&](std::size_t first, std::size_t last) {
         for (std::size_t f = 0; f < frames.size(); ++f) {
             const auto supports = std::span(trial.supports).subspan(f * all + first * kdop, (last - first) * kdop);
-            bound_packed<double>({packed.bvs, packed.node, packed.value, &frames[f], Rounding::plain, 1}, first, last, scratch.local(), supports);
+            bound_packed<double>({packed.bvs, packed.node, packed.value, &frames[f], Rounding::proven, 1}, first, last, scratch.local(), supports);
             for (std::size_t i = 0; i < supports.size(); ++i)
                 trial.width[first + i / kdop] += supports[i];
         }
@@ -110,7 +110,7 @@ std::vector<ChosenKind> choose_kinds(const Bvh& bvh, const DeformableSurface& su
     const std::vector<Vec3> place = node_places(surface);
     std::vector<ProjectedMaps<double>> frames;
     for (const double strength : {0.3, 0.3, 0.9, 0.9})
-        project<double>(synthetic_frame(place, root, strength, random), rest_extent(bvh, surface), kdop, Rounding::plain, frames.emplace_back());
+        project<double>(synthetic_frame(place, root, strength, random), rest_extent(bvh, surface), kdop, Rounding::proven, frames.emplace_back());
 
     if (method != Method::best) {
         std::vector<double> start;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "toolkit/bounds/rounding.hpp"
@@ -32,7 +33,7 @@ template <class T> Shifted<T> shifted(double x, double origin)
 {
     const double d = x - origin;
     const T value = static_cast<T>(d);
-    const double lost = origin == 0 ? 0 : succ(unit_roundoff * std::abs(d));
+    const double lost = origin == 0 || d == 0 ? 0 : succ(unit_roundoff * std::abs(d));
     const double off = std::abs(d - static_cast<double>(value)); // exact: 0, or a difference of neighbours
     return {value, off == 0 ? lost : succ(off + lost)};
 }
@@ -55,6 +56,8 @@ public:
 
     void pack(const RestBv& rest, Method kind, double start, const OrientedBox* oriented)
     {
+        if (out_.node.size() > std::numeric_limits<std::uint32_t>::max() - 8)
+            throw std::length_error("pack: over 2^32 influences; use larger leaves");
         if (sizeof(T) == 4 && rest.node.size() > most_nodes_in_float)
             throw std::length_error("pack: too many simulation nodes in a BV for float");
         bv_ = {};
@@ -132,8 +135,8 @@ private:
                 const double rounding = unit_roundoff * (std::abs(y) + (o == 0 ? 0 : std::abs(x)));
                 off[s] = std::max(off[s], succ(std::abs(y - static_cast<double>(packed)) + succ(rounding)));
             }
-        // Σ|q_s| off_s ≤ ‖q‖ Σ off_s; the factor is for the rounding of ‖q‖ and of the product, 2 + 2 + 1/2 + 1 steps at most.
-        bv_.slack = up<T>(succ(succ(rest.slack + succ(succ(off[0] + off[1]) + off[2])) * (1 + 8 * static_cast<double>(unit_roundoff_of<T>))));
+        // Σ|q_s| off_s ≤ ‖q‖ Σ off_s; the factor is for the rounding of ‖q‖ and of the product: quotients, squares, root and products, less than 6u.
+        bv_.slack = up<T>(succ(succ(rest.slack + succ(succ(off[0] + off[1]) + off[2])) * (1 + 16 * static_cast<double>(unit_roundoff_of<T>))));
     }
 
     void put_intervals(const RestBv& rest)

@@ -59,7 +59,7 @@ std::size_t most_points(const Bv& bv) { return std::clamp<std::size_t>(bv.influe
 
 // At least ‖x − (a point of the hull)‖₂, by pairwise Frank-Wolfe from the nearest point of the hull; stops below `enough`. The
 // coefficients are made dyadic with sum exactly 1, so that the origin of the coordinates drops out and any end is valid. x and the
-// hull are off by u·m each, m = max |coordinate|, the sum of n products passes n + 1 roundings more, and the norm 4.
+// hull are off by u·m each, m = max |coordinate|, the sum of n products passes n + 1 roundings more, and the scaled norm 6.
 double distance_to_hull(const Vec3& x, std::span<const Vec3> hull, double enough, std::vector<double>& alpha)
 {
     alpha.assign(hull.size(), 0.0);
@@ -100,7 +100,7 @@ double distance_to_hull(const Vec3& x, std::span<const Vec3> hull, double enough
         most = std::max(most, hull[i].lpNorm<Eigen::Infinity>());
     }
     const double n = static_cast<double>(hull.size());
-    return succ((x - sum).norm() + (4 * (n + 8) * unit_roundoff * most + n * smallest_subnormal));
+    return succ((x - sum).stableNorm() + (4 * (n + 8) * unit_roundoff * most + n * smallest_subnormal));
 }
 
 // Greedy: for every triangle of the net the best point p so far leaves max_i (h(u_i) − u_i·p), h the support of all vertices, which

@@ -40,7 +40,8 @@ public:
     Refitter(Refitter&&) noexcept;
 
     /// supports[bv·k + d], d as in axes_of(k). In parallel over BVs; the same bits for every thread count and every target. A transform
-    /// that is not finite makes the supports of the BVs that its simulation node influences infinite, and changes no other.
+    /// that is not finite makes the supports of the BVs that its simulation node influences infinite, and changes no other; or, on a
+    /// surface far from the origin of coordinates, others by rounding at most, should the grid cell of the median node change.
     /// Throws std::invalid_argument for sizes that do not fit and std::runtime_error for a changed floating-point environment.
     RefitReport operator()(std::span<const AffineMap> maps, std::span<double> supports);
 

@@ -35,7 +35,7 @@ void include(WeightModel& model, double weight, const Vec3& y)
     model.residual = residual <= model.residual ? model.residual : residual; // NaN goes in
     for (int i = 0; i < 3; ++i) {
         const double product = std::abs(delta) * std::abs(y[i]); // two roundings
-        if (product > 0)
+        if (delta != 0 && y[i] != 0) // the product may vanish all the same
             model.moment[i] = std::max(model.moment[i], succ(product + (4 * unit_roundoff * product + smallest_subnormal)));
     }
 }
@@ -62,6 +62,12 @@ void fit(const DeformableSurface& surface, std::span<const std::uint32_t> vertic
     bv.pivot = Vec3::Zero();
     for (std::uint32_t k : vertices)
         bv.pivot += surface.mesh.vertices[k] / count;
+    Vec3 low = surface.mesh.vertices[vertices[0]], high = low;
+    for (std::uint32_t k : vertices) {
+        low = low.cwiseMin(surface.mesh.vertices[k]);
+        high = high.cwiseMax(surface.mesh.vertices[k]);
+    }
+    bv.pivot = bv.pivot.cwiseMax(low).cwiseMin(high); // inside whatever rounding did; on flat BVs exactly in their plane
     const double unit = bv.box.half.maxCoeff() > 0 ? bv.box.half.maxCoeff() : 1;
     std::vector<double> mean(nodes.size(), 0.0);
     std::vector<Vec3> cross(nodes.size(), Vec3::Zero());

@@ -64,7 +64,10 @@ void add_rest_support(const PackedBv<T>& bv, const T* point, const AxisMap<T, kA
             most = greater(along, most);
             least_negated = greater(Lanes<T>::all(0) - along, least_negated);
         }
-        const T slack = std::sqrt(std::fma(q[0], q[0], std::fma(q[1], q[1], q[2] * q[2]))) * bv.slack;
+        // ‖q‖, scaled so that no square vanishes or overflows.
+        const T most_q = std::max(std::max(std::abs(q[0]), std::abs(q[1])), std::abs(q[2])), unit = most_q > 0 ? most_q : T(1);
+        const T x = q[0] / unit, y1 = q[1] / unit, z = q[2] / unit;
+        const T slack = (most_q * std::sqrt(std::fma(x, x, std::fma(y1, y1, z * z)))) * bv.slack;
         const T(&b)[4] = base.of[a];
         const T at_pivot = std::fma(b[0], bv.pivot[0], std::fma(b[1], bv.pivot[1], std::fma(b[2], bv.pivot[2], b[3])));
         const T height[2] = {greatest(most), greatest(least_negated)}, position[2] = {at_pivot, -at_pivot};
