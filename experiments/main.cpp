@@ -165,7 +165,7 @@ void add_verify(CLI::App& app, VerifyOptions& o)
 
 void add_tightness(CLI::App& app, TightnessOptions& o)
 {
-    CLI::App& command = *app.add_subcommand("tightness", "looseness by BVH level and simulation nodes (Fig. 5)");
+    CLI::App& command = *app.add_subcommand("tightness", "looseness by BVH level and node count (Fig. 5)");
     add_input(command, o.input);
     command.add_option_function<std::vector<std::string>>("--methods", [&o](const std::vector<std::string>& texts) {
         for (const std::string& text : texts) {

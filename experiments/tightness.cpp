@@ -160,6 +160,7 @@ int tightness(const TightnessOptions& given)
     std::vector<std::string> names;
     for (const Methods methods : options.methods)
         names.push_back(name_of(methods));
+    require_plottable(options.output.plot);
     catch_interrupt();
 
     const Input first = load_input(options.input);

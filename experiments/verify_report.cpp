@@ -56,7 +56,7 @@ void print_table(const Input& input, const VerifyOptions& options, const VerifyT
     fmt::print("n: simulation nodes per BV, mean. ratio, max: bound radius / true radius.\n"
                "box, interval, {}: what the bound gives away per direction, and\n"
                "why, as a mean share of the true radius{}.\n\n", boxes ? "corner, rounding" : "method",
-               boxes ? "" : "; method: all that is neither, negative where\nthe method knows more of the weights than their intervals");
+               boxes ? "" : ";\nmethod: all that is neither, negative where it knows more than weight intervals");
 
     if (!totals.volumes.empty()) {
         std::vector<std::vector<std::string>> volumes;

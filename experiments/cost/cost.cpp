@@ -105,7 +105,7 @@ std::vector<Figure> figures_of(const std::vector<DualGap>& gaps)
     std::vector<Figure> figures;
     for (const DualGap& gap : gaps)
         if (gap.method == Method::best && range_of(gap) == "all")
-            figures.push_back({fmt::format("{}: mean gap of 'best' after 1 pass, per cent", gap.input), fmt::format("{:.3f}", gap.gap[1]), "< 1", gap.gap[1] < 1});
+            figures.push_back({fmt::format("{}: mean gap of 'best' after 1 pass, %", gap.input), fmt::format("{:.3f}", gap.gap[1]), "< 1", gap.gap[1] < 1});
     return figures;
 }
 
@@ -146,11 +146,13 @@ void print_tables(const Input& input, const CostSample& sample, const std::vecto
 int cost(const CostOptions& options)
 {
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    require_plottable(options.output.plot);
+    catch_interrupt();
     const Input input = load_input(options.input);
     std::vector<DualGap> gaps = dual_gaps(input, options.leaf);
     if (options.all_scenes)
         for (const char* shape : {"brain", "santa", "fish"})
-            if (input.name != shape) {
+            if (input.name != shape && !interrupted()) {
                 InputOptions what;
                 what.input = shape;
                 for (DualGap& gap : dual_gaps(load_input(what), options.leaf))
@@ -161,7 +163,6 @@ int cost(const CostOptions& options)
     for (std::size_t l = 0; l + 1 < bvh.level.size(); ++l)
         sample.bvs.push_back((bvh.level[l] + bvh.level[l + 1]) / 2);
     pin_to_one_core();
-    catch_interrupt();
     std::vector<Row> rows;
     {
         Progress progress("measuring k-DOPs", options.kdops.size());

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 
 #include <fmt/format.h>
 
@@ -59,10 +60,18 @@ void print_records(const std::vector<nlohmann::ordered_json>& records, const Out
     }
 }
 
-void plot(const std::vector<Chart>& charts, const std::string& file)
+void require_plottable(const std::string& file)
 {
+    if (file.empty())
+        return;
     if (std::system("command -v gnuplot >/dev/null 2>&1") != 0)
         throw InputError("--plot needs gnuplot; on Debian: apt-get install gnuplot-nox");
+    if (!std::ofstream(file, std::ios::app))
+        throw InputError::in_file(file, "cannot be written");
+}
+
+void plot(const std::vector<Chart>& charts, const std::string& file)
+{
     std::string script = fmt::format("set terminal svg size 900,{} dynamic enhanced background '#ffffff' font 'sans-serif,14'\nset output {}\n"
                                      "set multiplot layout {},1\nset grid lc rgb '#d0d0d0'\nset key outside right\n",
                                      480 * charts.size(), quoted(file), charts.size());
@@ -79,7 +88,7 @@ void plot(const std::vector<Chart>& charts, const std::string& file)
         }
     }
     script += "unset multiplot\n";
-    FILE* gnuplot = popen("gnuplot", "w");
+    FILE* gnuplot = popen("gnuplot 2>/dev/null", "w");
     if (!gnuplot)
         throw InputError("--plot: gnuplot could not be run");
     const bool written = std::fwrite(script.data(), 1, script.size(), gnuplot) == script.size();

@@ -30,7 +30,9 @@ struct Chart {
     bool log_x = false, log_y = false;
     std::vector<Series> series;
 };
-/// Draws charts below each other as one SVG file, by gnuplot. Throws InputError where that is missing or fails.
+/// To be called before measuring: throws InputError if gnuplot is missing or the file cannot be written. Nothing for an empty name.
+void require_plottable(const std::string& file);
+/// Draws charts below each other as one SVG file, by gnuplot. Throws InputError where that fails.
 void plot(const std::vector<Chart>& charts, const std::string& file);
 
 } // namespace cinch
