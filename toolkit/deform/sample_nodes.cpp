@@ -17,8 +17,15 @@ struct Crossing {
     int sign; // of the triangle's orientation against the ray
 };
 
-// Points of a cubic grid of about `points` cells over the bounding box that have a non-zero winding number, found by
-// casting one ray along z per column. A column whose crossings do not cancel (open surface) is passed over.
+void lower_distances(const std::vector<Vec3>& points, const Vec3& node, std::vector<double>& squared)
+{
+    for (std::size_t i = 0; i < points.size(); ++i)
+        squared[i] = std::min(squared[i], (points[i] - node).squaredNorm());
+}
+
+} // namespace
+
+// One ray along z per column. A column whose crossings do not cancel (open surface) is passed over.
 std::vector<Vec3> interior_points(const TriangleMesh& mesh, double points)
 {
     Vec3 low = mesh.vertices.front(), high = low;
@@ -75,14 +82,6 @@ std::vector<Vec3> interior_points(const TriangleMesh& mesh, double points)
         }
     return inside;
 }
-
-void lower_distances(const std::vector<Vec3>& points, const Vec3& node, std::vector<double>& squared)
-{
-    for (std::size_t i = 0; i < points.size(); ++i)
-        squared[i] = std::min(squared[i], (points[i] - node).squaredNorm());
-}
-
-} // namespace
 
 SimulationNodes sample_nodes(const TriangleMesh& mesh, std::size_t count, std::uint64_t seed)
 {

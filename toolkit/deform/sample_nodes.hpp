@@ -15,6 +15,10 @@ struct SimulationNodes {
     double fill_distance = 0; ///< the farthest that any point of the volume or surface is from its nearest node
 };
 
+/// The points of a cubic grid of about `points` cells over the bounding box that the surface winds around: of a closed mesh its
+/// interior. None where the mesh is flat or open.
+std::vector<Vec3> interior_points(const TriangleMesh& mesh, double points);
+
 /// Farthest-point samples of the closed volume: the vertices and the points of a grid that have non-zero winding number
 /// (none where the mesh is flat or open). Fewer than `count` where there are not that many distinct points.
 /// `seed` chooses the first sample. Throws std::invalid_argument for a mesh without vertices or a count of 0.

@@ -5,6 +5,8 @@
 #include <map>
 #include <utility>
 
+#include <Eigen/Geometry>
+
 namespace cinch {
 
 Extent extent(const TriangleMesh& mesh)
@@ -29,6 +31,15 @@ void centre_and_scale(TriangleMesh& mesh, double half)
         if (e.longest_half > 0)
             v = (v / e.longest_half) * half;
     }
+}
+
+double signed_volume(const TriangleMesh& mesh)
+{
+    double six = 0;
+    const Vec3 o = extent(mesh).centre;
+    for (const Triangle& t : mesh.triangles)
+        six += (mesh.vertices[t[0]] - o).dot((mesh.vertices[t[1]] - o).cross(mesh.vertices[t[2]] - o));
+    return six / 6;
 }
 
 TriangleMesh subdivide(const TriangleMesh& mesh)

@@ -30,6 +30,9 @@ Extent extent(const TriangleMesh& mesh);
 /// is only moved. The rounded result is the new surface; nothing refers to the old one.
 void centre_and_scale(TriangleMesh& mesh, double half);
 
+/// Of the space that a closed mesh encloses, negative if its triangles face inward; meaningless for an open mesh.
+double signed_volume(const TriangleMesh& mesh);
+
 /// One 1-to-4 subdivision at the edge midpoints. A closed genus-0 surface of V vertices gets 4V − 6.
 TriangleMesh subdivide(const TriangleMesh& mesh);
 

@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "toolkit/simulate/body_simulation.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+
+#include "toolkit/simulate/explicit_step.hpp"
+#include "toolkit/simulate/implicit_step.hpp"
+#include "toolkit/simulate/stream.hpp"
+
+namespace cinch {
+
+using Clock = std::chrono::steady_clock;
+namespace {
+double since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+} // namespace
+
+BodySimulation::BodySimulation(MeshlessBody body, std::optional<DeformableSurface> surface) : body_(std::move(body)), surface_(std::move(surface))
+{
+    if (surface_ && surface_->weights.node_count != body_.size())
+        throw std::invalid_argument("BodySimulation: the surface's weights are of other nodes");
+    x_.assign(4 * body_.size(), 0);
+    v_ = x_;
+    for (std::size_t i = 0; i < body_.size(); ++i)
+        at(x_, i) = body_.rest[i];
+    pinned_.assign(body_.size(), 0);
+}
+
+void BodySimulation::add(std::unique_ptr<Effect> effect)
+{
+    needs_deformation_ |= effect->needs_deformation();
+    if (std::string(effect->name()) == "plasticity")
+        plastic_inverse_.assign(body_.size(), Mat3::Identity());
+    effects_.push_back({std::move(effect)});
+}
+
+void BodySimulation::add(Pin pin)
+{
+    for (const std::uint32_t i : pin.nodes)
+        pinned_.at(i) = 1;
+    pins_.push_back(std::move(pin));
+}
+
+void BodySimulation::place(const Field& positions, const Field& velocities)
+{
+    x_ = positions;
+    v_ = velocities;
+    time_s_ = 0;
+    zero_pinned(v_);
+}
+
+Configuration BodySimulation::configure(const Field& x, double time_s)
+{
+    const Configuration c{body_, surface_ ? &*surface_ : nullptr, x, gradient_, body_.deficient.empty() ? gradient_ : deformation_, plastic_inverse_, time_s};
+    if (!needs_deformation_)
+        return c;
+    const auto start = Clock::now();
+    gradient_.resize(12 * body_.size());
+    gather_gradients(lists_of(body_), x, gradient_);
+    if (!body_.deficient.empty()) {
+        deformation_ = gradient_;
+        complete(body_, deformation_, completion_);
+    }
+    shared_s_ += since(start);
+    return c;
+}
+
+void BodySimulation::add_forces(const Configuration& c, Field& force, std::optional<std::size_t> only)
+{
+    if (needs_deformation_)
+        stress_.assign(12 * body_.size(), 0);
+    for (std::size_t e = 0; e < effects_.size(); ++e)
+        if (!only || *only == e)
+            timed(effects_[e], [&](const Effect& effect) { effect.add_forces(c, {force, stress_}); });
+    if (needs_deformation_) {
+        const auto start = Clock::now();
+        scatter_stresses(lists_of(body_), stress_, force);
+        shared_s_ += since(start);
+    }
+}
+
+void BodySimulation::assemble(const Configuration& c, Parts parts)
+{
+    if (needs_deformation_)
+        local_.assign(body_.size(), Mat9::Zero());
+    block_.assign(body_.size(), Mat3::Zero());
+    for (Slot& slot : effects_) {
+        if (parts == Parts::damping)
+            slot.effect->add_damping(c, {local_, block_});
+        else if (parts == Parts::all || !slot.effect->dissipates())
+            timed(slot, [&](const Effect& effect) { effect.add_curvature(c, {local_, block_}); });
+    }
+    if (parts == Parts::damping)
+        return;
+    for (Slot& slot : effects_)
+        slot.effect->prepare_product(c);
+}
+
+// stress_ = −H dG and out −= block p; the stresses are still to be carried to the nodes.
+void BodySimulation::begin_product(const Field& p, Field& out)
+{
+    for (std::size_t i = 0; i < body_.size(); ++i)
+        at(out, i) -= block_[i] * at(p, i);
+    if (!needs_deformation_)
+        return;
+    const auto start = Clock::now();
+    change_.resize(12 * body_.size());
+    stress_.assign(12 * body_.size(), 0);
+    gather_gradients(lists_of(body_), p, change_);
+    for (std::size_t i = 0; i < body_.size(); ++i) {
+        const Mat3 dj = matrix_at(change_, i);
+        Mat3 dp;
+        Eigen::Map<Eigen::Matrix<double, 9, 1>>(dp.data()).noalias() = local_[i] * Eigen::Map<const Eigen::Matrix<double, 9, 1>>(dj.data());
+        matrix_at(stress_, i) = -dp;
+    }
+    shared_s_ += since(start);
+}
+
+void BodySimulation::end_product(Field& out)
+{
+    if (!needs_deformation_)
+        return;
+    const auto start = Clock::now();
+    scatter_stresses(lists_of(body_), stress_, out);
+    shared_s_ += since(start);
+}
+
+void BodySimulation::add_product(const Configuration& c, const Field& p, Field& out)
+{
+    begin_product(p, out);
+    for (Slot& slot : effects_)
+        if (slot.effect->couples_nodes())
+            timed(slot, [&](const Effect& effect) { effect.add_product(c, p, change_, {out, stress_}); });
+    end_product(out);
+}
+
+void BodySimulation::add_local_product(const Field& p, Field& out)
+{
+    begin_product(p, out);
+    end_product(out);
+}
+
+void BodySimulation::finish(double from_s, double dt_s)
+{
+    for (const Pin& pin : pins_)
+        for (std::size_t k = 0; k < pin.nodes.size(); ++k) {
+            const Vec3 now = pin.path(k, from_s + dt_s);
+            at(v_, pin.nodes[k]) = (now - pin.path(k, from_s)) / dt_s;
+            at(x_, pin.nodes[k]) = now;
+        }
+    if (plastic_inverse_.empty())
+        return;
+    const Configuration c = configure(x_, time_s_);
+    for (Slot& slot : effects_)
+        timed(slot, [&](Effect& effect) { effect.flow(c, dt_s, plastic_inverse_); });
+}
+
+void BodySimulation::move_pins(Field& x, double time_s) const
+{
+    for (const Pin& pin : pins_)
+        for (std::size_t k = 0; k < pin.nodes.size(); ++k)
+            at(x, pin.nodes[k]) = pin.path(k, time_s);
+}
+
+void BodySimulation::zero_pinned(Field& f) const
+{
+    for (std::size_t i = 0; i < pinned_.size(); ++i)
+        if (pinned_[i])
+            at(f, i).setZero();
+}
+
+StepReport BodySimulation::advance(double dt_s, const Integration& integration)
+{
+    if (!(dt_s >= 0) || !std::isfinite(dt_s))
+        throw std::invalid_argument("advance: the time step must be finite and not negative");
+    completion_ = integration.completion;
+    StepReport report;
+    if (dt_s == 0) {
+        report.kinetic = kinetic();
+        report.potential = potential();
+        return report;
+    }
+    const Field x = x_, v = v_;
+    const std::vector<Mat3> plastic = plastic_inverse_;
+    const double time = time_s_;
+    double turn = 0;
+    for (const Pin& pin : pins_)
+        turn = std::max(turn, pin.turn(time_s_, time_s_ + dt_s));
+    const double step = std::min(integration.step_s, dt_s / std::max(1.0, std::ceil(turn / 0.4)));
+    if (integration.method == Integration::Method::explicit_euler)
+        ExplicitStep(*this, integration).advance(dt_s, step, report);
+    else
+        ImplicitStep(*this, integration).advance(dt_s, step, report);
+    report.dt_s = dt_s;
+    if (!report.failure.empty()) {
+        x_ = x;
+        v_ = v;
+        plastic_inverse_ = plastic;
+        time_s_ = time;
+    } else {
+        time_s_ = time + dt_s;
+    }
+    report.kinetic = kinetic();
+    report.potential = potential();
+    return report;
+}
+
+std::vector<AffineMap> BodySimulation::frame()
+{
+    if (!needs_deformation_) { // the surface needs J where no effect does
+        MatrixField j(12 * body_.size());
+        gather_gradients(lists_of(body_), x_, j);
+        complete(body_, j, completion_);
+        return transforms(body_, x_, j);
+    }
+    return transforms(body_, x_, configure(x_, time_s_).deformation);
+}
+
+double BodySimulation::kinetic() const
+{
+    double sum = 0;
+    for (std::size_t i = 0; i < body_.size(); ++i)
+        sum += 0.5 * body_.mass[i] * at(v_, i).squaredNorm();
+    return sum;
+}
+
+double BodySimulation::potential()
+{
+    const Configuration c = configure(x_, time_s_);
+    double sum = 0;
+    for (Slot& slot : effects_)
+        if (!slot.effect->dissipates())
+            sum += slot.effect->energy(c);
+    return sum;
+}
+
+Field BodySimulation::forces(std::optional<std::size_t> only)
+{
+    Field force(4 * body_.size(), 0);
+    add_forces(configure(x_, time_s_), force, only);
+    return force;
+}
+
+void BodySimulation::save(std::ostream& out) const
+{
+    write_raw<double>(out, {&time_s_, 1});
+    write_raw<double>(out, x_);
+    write_raw<double>(out, v_);
+    for (const Mat3& p : plastic_inverse_)
+        write_raw<double>(out, {p.data(), 9});
+    const std::size_t mode = slow_mode_.size();
+    write_raw<std::size_t>(out, {&mode, 1});
+    write_raw<double>(out, slow_mode_);
+    for (const Slot& slot : effects_)
+        slot.effect->save(out);
+}
+
+void BodySimulation::restore(std::istream& in)
+{
+    read_raw<double>(in, {&time_s_, 1});
+    read_raw<double>(in, x_);
+    read_raw<double>(in, v_);
+    for (Mat3& p : plastic_inverse_)
+        read_raw<double>(in, {p.data(), 9});
+    std::size_t mode = 0;
+    read_raw<std::size_t>(in, {&mode, 1});
+    slow_mode_.resize(mode);
+    read_raw<double>(in, slow_mode_);
+    for (Slot& slot : effects_)
+        slot.effect->restore(in);
+}
+
+} // namespace cinch

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <iosfwd>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "toolkit/simulate/effect.hpp"
+#include "toolkit/simulate/pin.hpp"
+
+namespace cinch {
+
+/// How a body is moved through time.
+struct Integration {
+    enum class Method { explicit_euler, implicit_euler };
+    Method method = Method::implicit_euler;
+    double step_s = 1.0 / 60;  ///< of the implicit integrator; of the explicit one the longest substep
+    double safety = 0.6;       ///< explicit: share of the longest stable substep
+    double tolerance = 1e-4;   ///< implicit: greatest ‖∇E_i‖ / (m_i Δt²) that is left, m/s²
+    int most_iterations = 200; ///< implicit: of Newton's method
+    bool project = true;       ///< implicit: make the Hessian positive semidefinite where it proves not to be (off only in experiments)
+    Completion completion = Completion::on;
+};
+
+/// What a step did.
+struct StepReport {
+    double dt_s = 0;
+    int substeps = 0, iterations = 0, products = 0; ///< Newton iterations; products with the Hessian
+    int projected = 0;       ///< iterations that needed a positive semidefinite Hessian
+    double residual = 0;     ///< m/s², see tolerance; 0 for the explicit integrator
+    bool at_rounding = false; ///< the residual is what rounding leaves, above the tolerance
+    double kinetic = 0, potential = 0; ///< J, at the end
+    std::string failure;     ///< why it could not be made; the state is that before it
+};
+
+/// A body, its effects and its state.
+class BodySimulation {
+public:
+    /// An effect, and what it cost so far.
+    struct Slot {
+        std::unique_ptr<Effect> effect;
+        double seconds = 0;
+        std::size_t calls = 0;
+    };
+
+    /// Positions and velocities begin at rest at the body's own places.
+    BodySimulation(MeshlessBody body, std::optional<DeformableSurface> surface);
+
+    void add(std::unique_ptr<Effect> effect);
+    void add(Pin pin);
+
+    /// Advances by `dt_s` ≥ 0 in as many steps as the method and the pins' turning need; 0 changes nothing. Throws
+    /// std::invalid_argument for a negative or non-finite dt. If a step fails, says so and keeps the state before it.
+    StepReport advance(double dt_s, const Integration& integration);
+
+    const MeshlessBody& body() const { return body_; }
+    const std::optional<DeformableSurface>& surface() const { return surface_; }
+    const std::vector<Slot>& effects() const { return effects_; }
+    double time_s() const { return time_s_; }
+    double shared_seconds() const { return shared_s_; } ///< of computing J and carrying stresses to nodes
+    const Field& positions() const { return x_; }
+    const Field& velocities() const { return v_; }
+    void place(const Field& positions, const Field& velocities); ///< at time 0
+    const std::vector<Mat3>& plastic_inverse() const { return plastic_inverse_; }
+
+    /// T_j of every node.
+    std::vector<AffineMap> frame();
+    /// Energies of the present state, J.
+    double kinetic() const;
+    double potential();
+    /// The forces on the nodes at present, N; of the effect of that index alone, if one is given.
+    Field forces(std::optional<std::size_t> only = {});
+
+    void save(std::ostream& out) const;
+    void restore(std::istream& in);
+
+private:
+    friend class ImplicitStep;
+    friend class ExplicitStep;
+
+    Configuration configure(const Field& x, double time_s);
+    void add_forces(const Configuration& c, Field& force, std::optional<std::size_t> only = {});
+    enum class Parts { all, stiffness, damping }; ///< of the second derivatives: all, of what does not dissipate, by velocity
+    void assemble(const Configuration& c, Parts parts);
+    /// out += −K p of what assemble() found; add_local_product leaves out what is not local to a node.
+    void add_product(const Configuration& c, const Field& p, Field& out);
+    void add_local_product(const Field& p, Field& out);
+    void begin_product(const Field& p, Field& out);
+    void end_product(Field& out);
+    /// The end of a step: pins in place, with their velocity, and what flows.
+    void finish(double from_s, double dt_s);
+    void move_pins(Field& x, double time_s) const;
+    void zero_pinned(Field& f) const;
+    template <class Call> static void timed(Slot& slot, const Call& call)
+    {
+        const auto start = std::chrono::steady_clock::now();
+        call(*slot.effect);
+        slot.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        ++slot.calls;
+    }
+
+    MeshlessBody body_;
+    std::optional<DeformableSurface> surface_;
+    std::vector<Slot> effects_;
+    std::vector<Pin> pins_;
+    std::vector<std::uint8_t> pinned_;
+    bool needs_deformation_ = false, plastic_ = false;
+    Completion completion_ = Completion::on;
+    double shared_s_ = 0;
+
+    double time_s_ = 0;
+    Field x_, v_;
+    std::vector<Mat3> plastic_inverse_;
+
+    MatrixField gradient_, deformation_, stress_, change_; ///< scratch; empty unless some effect needs J
+    std::vector<Mat9> local_;
+    std::vector<Mat3> block_;
+    Field slow_mode_; ///< explicit: where the last power iteration ended
+};
+
+} // namespace cinch

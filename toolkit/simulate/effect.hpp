@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include "toolkit/simulate/configuration.hpp"
+
+namespace cinch {
+
+/// What an effect adds its forces to. A force on node i is force_i, N. A stress P_i, Pa, of the node's volume v_i is added to
+/// stress_i as −v_i P_i, N m; it reaches the neighbours by the transpose of the gradient (scatter_stresses).
+struct Forces {
+    Field& force;
+    MatrixField& stress; ///< empty unless an effect needs gradients
+};
+
+/// Second derivatives of the energy, for the integrators that want them.
+struct Curvature {
+    std::vector<Mat9>& local; ///< v_i ∂P_i/∂J_i, J stacked by columns; empty unless an effect needs gradients
+    std::vector<Mat3>& block; ///< ∂²U/∂X_i², of what does not pass through J
+};
+
+/// One effect on one body: a term of its energy, or a force. Only effects that a scene names are ever constructed.
+class Effect {
+public:
+    explicit Effect(const char* name);
+    virtual ~Effect() = default;
+
+    const char* name() const { return name_; }
+    /// Whether it looks at, or acts through, J.
+    virtual bool needs_deformation() const { return false; }
+    /// Whether its energy is one of a step (what it dissipates), not of a state.
+    virtual bool dissipates() const { return false; }
+    /// U, J; 0 for what has none.
+    virtual double energy(const Configuration&) const { return 0; }
+    /// Adds −∂U/∂X, or the force.
+    virtual void add_forces(const Configuration&, Forces) const {}
+    /// Adds the parts of ∂²U that are local to a node.
+    virtual void add_curvature(const Configuration&, Curvature) const {}
+    /// Whether add_product and add_diagonal are to be called.
+    virtual bool couples_nodes() const { return false; }
+    /// Called once per configuration before them.
+    virtual void prepare_product(const Configuration&) {}
+    /// Adds −∂²U/∂X² · dx, for the parts that are not local to a node. `dj` is the change of every G_i under dx.
+    virtual void add_product(const Configuration&, const Field& dx, const MatrixField& dj, Forces) const
+    {
+        (void)dx, (void)dj;
+    }
+    /// Adds to the diagonal of ∂²U/∂X² what add_product stands for, about; for the preconditioner.
+    virtual void add_diagonal(const Configuration&, std::vector<Mat3>&) const {}
+    /// Adds −∂f/∂v, as add_curvature: N s/m for what dissipates, for the explicit integrator's step.
+    virtual void add_damping(const Configuration&, Curvature) const {}
+    /// Called with every configuration that begins a step of length dt_s: for what lags behind.
+    virtual void remember(const Configuration&, double dt_s) { (void)dt_s; }
+    /// Called with the configuration that ends a step: for what flows. May change the plastic state.
+    virtual void flow(const Configuration&, double dt_s, std::vector<Mat3>& plastic_inverse)
+    {
+        (void)dt_s, (void)plastic_inverse;
+    }
+    /// What it remembers, for a checkpoint: the same bytes give the same future.
+    virtual void save(std::ostream&) const {}
+    virtual void restore(std::istream&) {}
+
+    /// How many effects of that name this process has constructed.
+    static std::size_t constructed(const std::string& name);
+
+private:
+    const char* name_;
+};
+
+} // namespace cinch

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
+#include "toolkit/simulate/effects/effects.hpp"
+#include "toolkit/simulate/effects/material.hpp"
+#include "toolkit/simulate/effects/stress_effect.hpp"
+
+namespace cinch {
+namespace {
+
+// Ψ = μ/2 (I − 3) + λ/2 (det F − α)² − μ/2 log(I + 1), I = ‖F‖², less its value at rest, with μ = 4/3 μ_Lamé,
+// λ = λ_Lamé + 5/6 μ_Lamé, which give Hooke's law for small strains, and α = 1 + 3 μ / (4 λ), which makes I stress-free.
+// λ > 0 for every ν in (−1, 0.5): it is E (5 + 2ν) / (12 (1 + ν) (1 − 2ν)).
+struct NeoHookean {
+    static constexpr bool feels_plasticity = true;
+    double mu, lambda, alpha;
+
+    NeoHookean(double young, double poisson)
+    {
+        const Lame l = lame(young, poisson);
+        mu = 4.0 / 3 * l.mu;
+        lambda = l.lambda + 5.0 / 6 * l.mu;
+        alpha = 1 + 0.75 * mu / lambda;
+    }
+    // With D = F − I, δ = I − 3 and j = det F − 1: 3/8 μ (δ − 2j) + μ/2 (δ/4 − log(1 + δ/4)) + λ/2 j², and in δ − 2j the terms of
+    // first order have cancelled, so that small strains lose no digits.
+    double density(std::size_t, const Mat3& f) const
+    {
+        const Mat3 d = f - Mat3::Identity();
+        const double trace = d.trace(), second = trace * trace - d.cwiseProduct(d.transpose()).sum(), third = d.determinant();
+        const double delta = 2 * trace + d.squaredNorm(), j = trace + 0.5 * second + third;
+        return 0.375 * mu * (d.squaredNorm() - second - 2 * third) + 0.5 * mu * (0.25 * delta - std::log1p(0.25 * delta)) + 0.5 * lambda * j * j;
+    }
+    void add_stress(std::size_t, const Mat3& f, Mat3& p) const
+    {
+        p += mu * (1 - 1 / (f.squaredNorm() + 1)) * f + lambda * (f.determinant() - alpha) * cofactor(f);
+    }
+    void add_curvature(std::size_t, const Mat3& f, Mat9& h) const
+    {
+        const double i = f.squaredNorm() + 1;
+        const auto c = stacked(cofactor(f)), v = stacked(f);
+        h.diagonal().array() += mu * (1 - 1 / i);
+        h += (2 * mu / (i * i)) * v * v.transpose() + lambda * c * c.transpose();
+        add_cofactor_derivative(f, lambda * (f.determinant() - alpha), h);
+    }
+};
+
+} // namespace
+
+std::unique_ptr<Effect> make_neo_hookean(double young, double poisson)
+{
+    return std::make_unique<StressEffect<NeoHookean>>("elastic", NeoHookean(young, poisson));
+}
+
+} // namespace cinch

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "toolkit/simulate/effect.hpp"
+
+namespace cinch {
+
+/// An effect whose energy is a density of the deformation of every node: Σ v_i Ψ(J_i), or Σ v_i Ψ(J_i F_p⁻¹) where `Law` feels
+/// plasticity. Law has density(i, F), add_stress(i, F, P) and add_curvature(i, F, ∂P/∂F), in Pa.
+template <class Law> class StressEffect : public Effect {
+public:
+    StressEffect(const char* name, Law law) : Effect(name), law_(std::move(law)) {}
+
+    bool needs_deformation() const override { return true; }
+    double energy(const Configuration& c) const override
+    {
+        double sum = 0;
+        for (std::size_t i = 0; i < c.body.size(); ++i)
+            if (c.body.rank[i] > 0)
+                sum += c.body.volume[i] * law_.density(i, elastic(c, i));
+        return sum;
+    }
+    void add_forces(const Configuration& c, Forces out) const override
+    {
+        for (std::size_t i = 0; i < c.body.size(); ++i) {
+            if (c.body.rank[i] == 0)
+                continue;
+            Mat3 p = Mat3::Zero();
+            law_.add_stress(i, elastic(c, i), p);
+            if (plastic(c))
+                p *= c.plastic_inverse[i].transpose();
+            matrix_at(out.stress, i) -= c.body.volume[i] * p;
+        }
+    }
+    void add_curvature(const Configuration& c, Curvature out) const override
+    {
+        for (std::size_t i = 0; i < c.body.size(); ++i) {
+            if (c.body.rank[i] == 0)
+                continue;
+            Mat9 h = Mat9::Zero();
+            law_.add_curvature(i, elastic(c, i), h);
+            if (plastic(c)) {
+                Mat9 l = Mat9::Zero(); // stacked(dJ F_p⁻¹) = l stacked(dJ)
+                for (int r = 0; r < 3; ++r)
+                    for (int s = 0; s < 3; ++s)
+                        l.block<3, 3>(3 * r, 3 * s).diagonal().setConstant(c.plastic_inverse[i](s, r));
+                h = l.transpose() * h * l;
+            }
+            out.local[i] += c.body.volume[i] * h;
+        }
+    }
+    bool dissipates() const override { return requires { law_.viscosity; }; }
+    void add_damping(const Configuration& c, Curvature out) const override
+    {
+        if constexpr (requires(Mat9& h) { law_.add_damping(Mat3(), h); })
+            for (std::size_t i = 0; i < c.body.size(); ++i) {
+                Mat9 h = Mat9::Zero();
+                law_.add_damping(matrix_at(c.deformation, i), h);
+                out.local[i] += c.body.volume[i] * h;
+            }
+    }
+    void remember(const Configuration& c, double dt_s) override
+    {
+        if constexpr (requires { law_.remember(c, dt_s); })
+            law_.remember(c, dt_s);
+    }
+    void save(std::ostream& out) const override
+    {
+        if constexpr (requires { law_.save(out); })
+            law_.save(out);
+    }
+    void restore(std::istream& in) override
+    {
+        if constexpr (requires { law_.restore(in); })
+            law_.restore(in);
+    }
+
+private:
+    static bool plastic(const Configuration& c) { return Law::feels_plasticity && !c.plastic_inverse.empty(); }
+    static Mat3 elastic(const Configuration& c, std::size_t i)
+    {
+        const Mat3 j = matrix_at(c.deformation, i);
+        return plastic(c) ? Mat3(j * c.plastic_inverse[i]) : j;
+    }
+
+    Law law_;
+};
+
+} // namespace cinch

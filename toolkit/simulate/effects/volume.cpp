@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "toolkit/simulate/effects/effects.hpp"
+#include "toolkit/simulate/effects/material.hpp"
+#include "toolkit/simulate/effects/stress_effect.hpp"
+
+namespace cinch {
+namespace {
+
+struct VolumePreservation {
+    static constexpr bool feels_plasticity = false; // plastic flow keeps the volume
+    double stiffness;
+
+    double density(std::size_t, const Mat3& f) const
+    {
+        const double d = f.determinant() - 1;
+        return 0.5 * stiffness * d * d;
+    }
+    void add_stress(std::size_t, const Mat3& f, Mat3& p) const { p += stiffness * (f.determinant() - 1) * cofactor(f); }
+    void add_curvature(std::size_t, const Mat3& f, Mat9& h) const
+    {
+        const auto c = stacked(cofactor(f));
+        h += stiffness * c * c.transpose();
+        add_cofactor_derivative(f, stiffness * (f.determinant() - 1), h);
+    }
+};
+
+} // namespace
+
+std::unique_ptr<Effect> make_volume(double stiffness)
+{
+    return std::make_unique<StressEffect<VolumePreservation>>("volume", VolumePreservation{stiffness});
+}
+
+} // namespace cinch

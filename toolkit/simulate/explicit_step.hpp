@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "toolkit/simulate/body_simulation.hpp"
+
+namespace cinch {
+
+/// Symplectic Euler: v += Δt f(x)/m, then x += Δt v, in substeps that a power iteration proves stable at the present state.
+class ExplicitStep {
+public:
+    ExplicitStep(BodySimulation& body, const Integration& integration) : b_(body), integration_(integration) {}
+    void advance(double dt_s, double longest_s, StepReport& report);
+
+    /// The longest stable substep, s: ω² Δt² + 2 c Δt ≤ 4 with ω² and c the greatest eigenvalues of M⁻¹K and M⁻¹C (damping acts
+    /// on the velocity of the step before). +∞ if nothing restores or resists.
+    double longest_stable(const Configuration& c);
+
+private:
+    double greatest_eigenvalue(const Configuration& c, int iterations, bool stiffness);
+
+    BodySimulation& b_;
+    const Integration& integration_;
+};
+
+} // namespace cinch
