@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "toolkit/simulate/body_simulation.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <stdexcept>
@@ -30,6 +31,8 @@ BodySimulation::BodySimulation(MeshlessBody body, std::optional<DeformableSurfac
 void BodySimulation::add(std::unique_ptr<Effect> effect)
 {
     needs_deformation_ |= effect->needs_deformation();
+    if (effect->has_springs())
+        spring_.assign(body_.size(), 0);
     if (std::string(effect->name()) == "plasticity")
         plastic_inverse_.assign(body_.size(), Mat3::Identity());
     effects_.push_back({std::move(effect)});
@@ -70,12 +73,13 @@ void BodySimulation::add_forces(const Configuration& c, Field& force, std::optio
 {
     if (needs_deformation_)
         stress_.assign(12 * body_.size(), 0);
+    std::fill(spring_.begin(), spring_.end(), 0);
     for (std::size_t e = 0; e < effects_.size(); ++e)
         if (!only || *only == e)
-            timed(effects_[e], [&](const Effect& effect) { effect.add_forces(c, {force, stress_}); });
+            timed(effects_[e], [&](const Effect& effect) { effect.add_forces(c, {force, stress_, spring_}); });
     if (needs_deformation_) {
         const auto start = Clock::now();
-        scatter_stresses(lists_of(body_), stress_, force);
+        scatter_stresses(lists_of(body_), stress_, spring_, c.x, force);
         shared_s_ += since(start);
     }
 }
@@ -106,6 +110,7 @@ void BodySimulation::begin_product(const Field& p, Field& out)
         return;
     const auto start = Clock::now();
     change_.resize(12 * body_.size());
+    std::fill(spring_.begin(), spring_.end(), 0);
     stress_.assign(12 * body_.size(), 0);
     gather_gradients(lists_of(body_), p, change_);
     for (std::size_t i = 0; i < body_.size(); ++i) {
@@ -117,12 +122,12 @@ void BodySimulation::begin_product(const Field& p, Field& out)
     shared_s_ += since(start);
 }
 
-void BodySimulation::end_product(Field& out)
+void BodySimulation::end_product(const Field& p, Field& out)
 {
     if (!needs_deformation_)
         return;
     const auto start = Clock::now();
-    scatter_stresses(lists_of(body_), stress_, out);
+    scatter_stresses(lists_of(body_), stress_, spring_, p, out);
     shared_s_ += since(start);
 }
 
@@ -131,14 +136,14 @@ void BodySimulation::add_product(const Configuration& c, const Field& p, Field& 
     begin_product(p, out);
     for (Slot& slot : effects_)
         if (slot.effect->couples_nodes())
-            timed(slot, [&](const Effect& effect) { effect.add_product(c, p, change_, {out, stress_}); });
-    end_product(out);
+            timed(slot, [&](const Effect& effect) { effect.add_product(c, p, change_, {out, stress_, spring_}); });
+    end_product(p, out);
 }
 
 void BodySimulation::add_local_product(const Field& p, Field& out)
 {
     begin_product(p, out);
-    end_product(out);
+    end_product(p, out);
 }
 
 void BodySimulation::finish(double from_s, double dt_s)

@@ -89,7 +89,7 @@ private:
     void add_product(const Configuration& c, const Field& p, Field& out);
     void add_local_product(const Field& p, Field& out);
     void begin_product(const Field& p, Field& out);
-    void end_product(Field& out);
+    void end_product(const Field& p, Field& out);
     /// The end of a step: pins in place, with their velocity, and what flows.
     void finish(double from_s, double dt_s);
     void move_pins(Field& x, double time_s) const;
@@ -107,7 +107,7 @@ private:
     std::vector<Slot> effects_;
     std::vector<Pin> pins_;
     std::vector<std::uint8_t> pinned_;
-    bool needs_deformation_ = false, plastic_ = false;
+    bool needs_deformation_ = false;
     Completion completion_ = Completion::on;
     double shared_s_ = 0;
 
@@ -116,6 +116,7 @@ private:
     std::vector<Mat3> plastic_inverse_;
 
     MatrixField gradient_, deformation_, stress_, change_; ///< scratch; empty unless some effect needs J
+    std::vector<double> spring_; ///< scratch; empty unless some effect has springs
     std::vector<Mat9> local_;
     std::vector<Mat3> block_;
     Field slow_mode_; ///< explicit: where the last power iteration ended

@@ -18,7 +18,7 @@ Vec3 perpendicular(const Vec3& a, const Vec3& b)
 
 } // namespace
 
-NeighbourLists lists_of(const MeshlessBody& body) { return {body.row, body.neighbour, body.gradient}; }
+NeighbourLists lists_of(const MeshlessBody& body) { return {body.row, body.neighbour, body.record}; }
 
 void complete(const MeshlessBody& body, MatrixField& deformation, Completion completion)
 {

@@ -11,9 +11,11 @@ namespace cinch {
 
 /// What an effect adds its forces to. A force on node i is force_i, N. A stress P_i, Pa, of the node's volume v_i is added to
 /// stress_i as −v_i P_i, N m; it reaches the neighbours by the transpose of the gradient (scatter_stresses).
+/// A spring s_i pulls node i's neighbours to it by s_i w_ij (X_i − X_j), N, in the same pass.
 struct Forces {
     Field& force;
-    MatrixField& stress; ///< empty unless an effect needs gradients
+    MatrixField& stress;         ///< empty unless an effect needs gradients
+    std::vector<double>& spring; ///< N/m; empty unless an effect has springs
 };
 
 /// Second derivatives of the energy, for the integrators that want them.
@@ -31,6 +33,8 @@ public:
     const char* name() const { return name_; }
     /// Whether it looks at, or acts through, J.
     virtual bool needs_deformation() const { return false; }
+    /// Whether it uses Forces::spring.
+    virtual bool has_springs() const { return false; }
     /// Whether its energy is one of a step (what it dissipates), not of a state.
     virtual bool dissipates() const { return false; }
     /// U, J; 0 for what has none.

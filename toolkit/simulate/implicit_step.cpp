@@ -91,7 +91,7 @@ void ImplicitStep::precondition(const Configuration& c, double dt)
         for (std::size_t i = 0; i < body.size(); ++i) {
             Vec3 sum = Vec3::Zero();
             for (std::uint32_t e = body.row[i]; e < body.row[i + 1]; ++e) {
-                const Vec3 d = Eigen::Map<const Vec3>(body.gradient.data() + 4 * std::size_t(e));
+                const Vec3 d = body.d(e);
                 sum += d;
                 add(b_.local_[i], d, diagonal[body.neighbour[e]]);
             }

@@ -74,7 +74,7 @@ std::vector<double> density_volumes(const MeshlessBody& body, const std::vector<
         auto cube = [&](std::size_t j) { return mean_distance[j] * mean_distance[j] * mean_distance[j]; };
         sum[i] = cube(i) * kernel(1, body.support[i]);
         for (std::uint32_t e = body.row[i]; e < body.row[i + 1]; ++e)
-            sum[i] += cube(body.neighbour[e]) * kernel(body.kernel[e], body.support[i]);
+            sum[i] += cube(body.neighbour[e]) * kernel(body.kernel(e), body.support[i]);
         s += 1 / sum[i] / static_cast<double>(n);
     }
     for (std::size_t i = 0; i < n; ++i)
@@ -145,11 +145,9 @@ MeshlessBody discretise(std::span<const Vec3> nodes, std::span<const double> vol
         }
         body.support.push_back(h);
         body.neighbour.insert(body.neighbour.end(), chosen.node.begin(), chosen.node.end());
-        for (Eigen::Index j = 0; j < chosen.weight.size(); ++j) {
-            body.kernel.push_back(chosen.weight[j]);
-            for (const double d : {chosen.fit.d(0, j), chosen.fit.d(1, j), chosen.fit.d(2, j), 0.0})
-                body.gradient.push_back(d);
-        }
+        for (Eigen::Index j = 0; j < chosen.weight.size(); ++j)
+            for (const double value : {chosen.fit.d(0, j), chosen.fit.d(1, j), chosen.fit.d(2, j), chosen.weight[j]})
+                body.record.push_back(value);
         body.row.push_back(static_cast<std::uint32_t>(body.neighbour.size()));
         body.rank.push_back(static_cast<std::uint8_t>(chosen.fit.rank));
         if (chosen.fit.rank < 3) {

@@ -27,8 +27,7 @@ struct MeshlessBody {
     std::vector<double> support;        ///< h_i, m
     std::vector<std::uint32_t> row = {0}; ///< node i owns entries [row[i], row[i+1])
     std::vector<std::uint32_t> neighbour;
-    AlignedVector<double> gradient;     ///< per entry d_ij, 1/m, in a record of 4 whose last is 0
-    std::vector<double> kernel;         ///< per entry w_ij = (1 − r²/h_i²)³
+    AlignedVector<double> record;       ///< per entry 4 values: d_ij, 1/m, and the kernel w_ij = (1 − r²/h_i²)³
     std::vector<std::uint8_t> rank;     ///< of the neighbours of i: 3, or 2 in a plane, 1 on a line, 0 for none
     std::vector<std::uint32_t> deficient; ///< nodes of rank < 3
     std::vector<Mat3> frame;            ///< of those: an orthonormal basis, determinant 1, that begins with the directions they span
@@ -36,6 +35,8 @@ struct MeshlessBody {
     std::vector<std::string> notes;     ///< what a user should know: coincident nodes, missing volumes
 
     std::size_t size() const { return rest.size(); }
+    Eigen::Map<const Vec3> d(std::size_t entry) const { return Eigen::Map<const Vec3>(record.data() + 4 * entry); }
+    double kernel(std::size_t entry) const { return record[4 * entry + 3]; }
 };
 
 /// `volume` (m³) of every node; empty: by the density of the nodes, as in the paper. Neighbourhoods that span less than space grow

@@ -4,6 +4,7 @@
 #include "toolkit/simulate/effects/effects.hpp"
 #include "toolkit/simulate/effects/material.hpp"
 #include "toolkit/simulate/effects/stress_effect.hpp"
+#include "toolkit/simulate/kernel/neo_hookean_kernel.hpp"
 
 namespace cinch {
 namespace {
@@ -34,6 +35,10 @@ struct NeoHookean {
     void add_stress(std::size_t, const Mat3& f, Mat3& p) const
     {
         p += mu * (1 - 1 / (f.squaredNorm() + 1)) * f + lambda * (f.determinant() - alpha) * cofactor(f);
+    }
+    void add_all_stresses(const Configuration& c, MatrixField& stress) const
+    {
+        add_neo_hookean_stress(mu, lambda, alpha, c.body.volume, c.deformation, stress);
     }
     void add_curvature(std::size_t, const Mat3& f, Mat9& h) const
     {

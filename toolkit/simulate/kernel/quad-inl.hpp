@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 #include <hwy/highway.h>
 
@@ -55,15 +56,64 @@ template <class F> HWY_INLINE Quad each(const Quad& a, const Quad& b, F&& f)
 HWY_INLINE Quad operator+(const Quad& a, const Quad& b) { return each(a, b, [](auto x, auto y) { return hn::Add(x, y); }); }
 HWY_INLINE Quad operator-(const Quad& a, const Quad& b) { return each(a, b, [](auto x, auto y) { return hn::Sub(x, y); }); }
 HWY_INLINE Quad operator*(const Quad& a, const Quad& b) { return each(a, b, [](auto x, auto y) { return hn::Mul(x, y); }); }
+HWY_INLINE Quad operator/(const Quad& a, const Quad& b) { return each(a, b, [](auto x, auto y) { return hn::Div(x, y); }); }
 HWY_INLINE Quad times(const Quad& a, double s) { return a * Quad::all(s); }
-/// a s + b, rounded once.
-HWY_INLINE Quad multiply_add(const Quad& a, double s, const Quad& b)
+/// a b + c, rounded once.
+HWY_INLINE Quad multiply_add(const Quad& a, const Quad& b, const Quad& c)
 {
+    Quad q;
+    for (std::size_t i = 0; i < Quad::vectors; ++i)
 #if HWY_NATIVE_FMA
-    return each(a, b, [s](auto x, auto y) { return hn::MulAdd(x, hn::Set(Quad::D(), s), y); });
+        q.v[i] = hn::MulAdd(a.v[i], b.v[i], c.v[i]);
 #else // the emulation would round twice
-    return each(a, b, [s](auto x, auto y) { return hn::Set(Quad::D(), std::fma(hn::GetLane(x), s, hn::GetLane(y))); });
+        q.v[i] = hn::Set(Quad::D(), std::fma(hn::GetLane(a.v[i]), hn::GetLane(b.v[i]), hn::GetLane(c.v[i])));
+    static_assert(Quad::width == 1);
 #endif
+    return q;
+}
+
+/// Lane k everywhere. From a register: the loads, not the arithmetic, are what limits these kernels.
+template <std::size_t k> HWY_INLINE Quad broadcast(const Quad& a)
+{
+#if HWY_TARGET == HWY_SCALAR
+    return Quad::all(hn::GetLane(a.v[k]));
+#else
+    Quad q;
+    if constexpr (Quad::width == 4) {
+        HWY_ALIGN constexpr std::int64_t lanes[4] = {k, k, k, k};
+        q.v[0] = hn::TableLookupLanes(a.v[0], hn::SetTableIndices(Quad::D(), lanes));
+    } else {
+        for (std::size_t i = 0; i < Quad::vectors; ++i)
+            q.v[i] = hn::Broadcast<k % Quad::width>(a.v[k / Quad::width]);
+    }
+    return q;
+#endif
+}
+
+/// Rows become columns.
+HWY_INLINE void transpose(Quad (&q)[4])
+{
+#if HWY_TARGET != HWY_SCALAR
+    if constexpr (Quad::width == 4) {
+        const Quad::D d;
+        const auto a = hn::InterleaveLower(d, q[0].v[0], q[1].v[0]), b = hn::InterleaveUpper(d, q[0].v[0], q[1].v[0]);
+        const auto e = hn::InterleaveLower(d, q[2].v[0], q[3].v[0]), f = hn::InterleaveUpper(d, q[2].v[0], q[3].v[0]);
+        q[0].v[0] = hn::ConcatLowerLower(d, e, a);
+        q[1].v[0] = hn::ConcatLowerLower(d, f, b);
+        q[2].v[0] = hn::ConcatUpperUpper(d, e, a);
+        q[3].v[0] = hn::ConcatUpperUpper(d, f, b);
+        return;
+    }
+#endif
+    double rows[4][4];
+    for (std::size_t r = 0; r < 4; ++r)
+        q[r].store(rows[r]);
+    HWY_ALIGN double columns[4][4];
+    for (std::size_t r = 0; r < 4; ++r)
+        for (std::size_t c = 0; c < 4; ++c)
+            columns[c][r] = rows[r][c];
+    for (std::size_t r = 0; r < 4; ++r)
+        q[r] = Quad::load(columns[r]);
 }
 
 } // namespace cinch::HWY_NAMESPACE
