@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include "toolkit/bounds/aligned.hpp"
+#include "toolkit/deform/aligned.hpp"
 #include "toolkit/deform/surface.hpp"
 #include "toolkit/hierarchy/bvh.hpp"
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include "toolkit/bounds/aligned.hpp"
+#include "toolkit/deform/aligned.hpp"
 
 #include "toolkit/bounds/weight_space.hpp"
 #include "toolkit/surface/skin.hpp"

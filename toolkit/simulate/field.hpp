@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <Eigen/LU>
 
-#include "toolkit/bounds/aligned.hpp"
+#include "toolkit/deform/aligned.hpp"
 #include "toolkit/surface/triangle_mesh.hpp"
 
 namespace cinch {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "toolkit/bounds/aligned.hpp"
+#include "toolkit/deform/aligned.hpp"
 #include "toolkit/bounds/packed_bv.hpp"
 #include "toolkit/bounds/projected_maps.hpp"
 

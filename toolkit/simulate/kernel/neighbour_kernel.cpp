@@ -7,7 +7,7 @@
 #define HWY_TARGET_INCLUDE "toolkit/simulate/kernel/neighbour_kernel.cpp"
 #include <hwy/foreach_target.h>
 
-#include "toolkit/simulate/kernel/quad-inl.hpp"
+#include "toolkit/deform/kernel/quad-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace cinch::HWY_NAMESPACE {
