@@ -16,21 +16,8 @@
 namespace cinch {
 namespace {
 
-struct Shape {
-    const char* name;
-    TriangleMesh (*make)();
-    std::size_t nodes; // as in the paper
-};
-
-TriangleMesh santa_fine() { return subdivide(subdivide(santa(2857))); }
-
-constexpr Shape shapes[] = {
-    {"brain", [] { return brain(30000); }, 509},        {"brain-3500", [] { return brain(3500); }, 509},
-    {"brain-30000", [] { return brain(30000); }, 509},  {"brain-145000", [] { return brain(145000); }, 509},
-    {"santa", [] { return santa(2857); }, 115},         {"santa-2857", [] { return santa(2857); }, 115},
-    {"santa-45682", santa_fine, 115},                   {"fish", [] { return fish(8000); }, 96},
-    {"fish-8000", [] { return fish(8000); }, 96},
-};
+// Simulation nodes of the shipped shapes, as in the paper.
+std::size_t usual_nodes(const std::string& shape) { return shape.starts_with("brain") ? 509 : shape.starts_with("santa") ? 115 : 96; }
 
 void refuse_options(const InputOptions& o, bool scripted, bool clips, bool sampled)
 {
@@ -151,27 +138,15 @@ bool is_character_file(const std::filesystem::path& path)
 
 } // namespace
 
-std::vector<std::string> shape_names()
-{
-    std::vector<std::string> names;
-    for (const Shape& shape : shapes)
-        names.emplace_back(shape.name);
-    return names;
-}
-
 Input load_input(const InputOptions& options)
 {
     Input input;
     input.name = options.input;
-    const Shape* shape = nullptr;
-    for (const Shape& s : shapes)
-        if (options.input == s.name)
-            shape = &s;
-    if (shape) {
+    if (auto shape = named_shape(options.input)) {
         if (!options.weights.empty() || !options.transforms.empty())
             throw InputError("--weights and --transforms need a mesh file");
-        input.surface.mesh = shape->make();
-        script(input, options, shape->nodes);
+        input.surface.mesh = std::move(*shape);
+        script(input, options, usual_nodes(options.input));
     } else if (is_character_file(options.input)) {
         load_character(input, options);
     } else if (is_mesh_file(options.input)) {

@@ -32,9 +32,6 @@ struct Input {
     std::vector<std::string> report; ///< one line each: what was loaded, and what was changed or left out
 };
 
-/// Names of the shapes that come with the program.
-std::vector<std::string> shape_names();
-
 /// Loads a shipped shape, a mesh (with scripted motion, or with weights and transforms), or a skinned character.
 /// Throws InputError, one line, for anything that cannot be used, options that do not apply included.
 Input load_input(const InputOptions& options);

@@ -14,11 +14,13 @@
 #include "experiments/fuzz/fuzz.hpp"
 #include "experiments/report/provenance.hpp"
 #include "experiments/scaling.hpp"
+#include "experiments/simulation/simulate.hpp"
 #include "experiments/tightness.hpp"
 #include "experiments/verify.hpp"
 #include "toolkit/bounds/kernel/bound_kernel.hpp"
 #include "toolkit/deform/motion.hpp"
 #include "toolkit/surface/input_error.hpp"
+#include "toolkit/surface/shapes.hpp"
 
 namespace {
 
@@ -89,6 +91,35 @@ void add_scaling(CLI::App& app, ScalingOptions& o)
                    "\n"
                    "All methods take turns on one core. Exit status: 0 measured, 2 bad usage,\n"
                    "130 interrupted.");
+}
+
+void add_simulate(CLI::App& app, SimulateOptions& o)
+{
+    CLI::App& command = *app.add_subcommand("simulate", "run a scene with only the effects it names");
+    auto option = [&](const char* name, auto& value, const std::string& description) { return command.add_option(name, value, wrapped(description)); };
+    option("SCENE", o.scene, fmt::format("a scene ({}) or a file (.json)", fmt::join(shipped_scenes(), ", ")))->required()->option_text("");
+    option("--nodes", o.changes.nodes, "simulation nodes per body, where they are sampled [as the scene says]")->check(CLI::Range(1, 100000))->option_text("N");
+    option("--duration", o.changes.duration_s, "seconds to simulate [as the scene says]")->check(CLI::Range(0.0, 1e6))->option_text("S");
+    option("--step", o.changes.step_s, "longest time step in seconds [as the scene says]")->check(CLI::Range(1e-9, 1e3))->option_text("S");
+    option("--integrator", o.changes.integrator, "implicit or explicit [as the scene says]")->check(CLI::IsMember({"implicit", "explicit"}))->option_text("NAME");
+    option("--frames", o.frames, "write the transforms of all frames: binary, or JSON Lines if the name ends in .jsonl")->option_text("FILE");
+    option("--meshes", o.meshes, "write every body in every frame as a mesh")->option_text("DIR");
+    option("--mesh-format", o.mesh_format, "ply or obj [ply]")->check(CLI::IsMember({"ply", "obj"}))->option_text("NAME");
+    option("--checkpoint", o.checkpoint, "keep the state in this file, to continue from")->option_text("FILE");
+    option("--resume", o.resume, "continue from this file; the frames become the bytes of one uninterrupted run")->option_text("FILE");
+    option("--every", o.every, "frames from checkpoint to checkpoint [10]")->check(CLI::Range(1, 1000000))->option_text("N");
+    option("--threads", o.threads, "threads [all cores]; the results are the same")->check(CLI::Range(1, 1024))->option_text("N");
+    command.add_flag("--explain", o.explain, wrapped("say what was left out, and how often each effect was called"));
+    command.add_flag("--energies", o.energies, wrapped("with --json: a record of every body in every frame"));
+    command.add_flag("--json", o.json, "JSON Lines on standard output and nothing else");
+    command.footer("Examples:\n"
+                   "  cinch simulate brain-pull --explain\n"
+                   "  cinch simulate santa-ring-3 --frames ring.frames --checkpoint ring.state\n"
+                   "  cinch simulate santa-ring-3 --frames ring.frames --resume ring.state\n"
+                   "  cinch simulate twist-180 --meshes twist --mesh-format obj\n"
+                   "\n"
+                   "Exit status: 0 done, 1 a step could not be solved (the state before it is kept),\n"
+                   "2 bad usage or scene, 130 interrupted (what is done is kept).");
 }
 
 #ifdef CINCH_EXACT
@@ -294,6 +325,8 @@ int main(int argc, char** argv)
     add_fuzz(app, fuzz_options);
 #endif
     add_scaling(app, scaling_options);
+    SimulateOptions simulate_options;
+    add_simulate(app, simulate_options);
     const auto run = [&](const CLI::App& parsed) -> int {
 #ifdef CINCH_EXACT
         if (parsed.got_subcommand("verify"))
@@ -314,6 +347,8 @@ int main(int argc, char** argv)
 #endif
         if (parsed.got_subcommand("scaling"))
             return scaling(scaling_options);
+        if (parsed.got_subcommand("simulate"))
+            return simulate(simulate_options);
         return parsed.get_subcommands().empty() ? bad_input : 0;
     };
     if (const char* target = std::getenv("CINCH_TARGET"); target && *target && !force_kernel_target(target)) {

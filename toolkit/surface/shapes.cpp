@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 namespace cinch {
@@ -101,6 +102,77 @@ TriangleMesh fish(std::size_t vertices)
         d = smooth_union(d, ellipsoid(p, Vec3(0.35, -0.28, -0.12), Vec3(0.16, 0.22, 0.06)), 0.10);
         return d;
     });
+    return mesh;
+}
+
+namespace {
+
+struct Shape {
+    const char* name;
+    TriangleMesh (*make)();
+};
+
+TriangleMesh santa_fine() { return subdivide(subdivide(santa(2857))); }
+
+constexpr Shape shapes[] = {
+    {"brain", [] { return brain(30000); }},        {"brain-3500", [] { return brain(3500); }},  {"brain-30000", [] { return brain(30000); }},
+    {"brain-145000", [] { return brain(145000); }}, {"santa", [] { return santa(2857); }},       {"santa-2857", [] { return santa(2857); }},
+    {"santa-45682", santa_fine},                    {"fish", [] { return fish(8000); }},         {"fish-8000", [] { return fish(8000); }},
+};
+
+} // namespace
+
+std::vector<std::string> shape_names()
+{
+    std::vector<std::string> names;
+    for (const Shape& shape : shapes)
+        names.emplace_back(shape.name);
+    return names;
+}
+
+std::optional<TriangleMesh> named_shape(std::string_view name)
+{
+    for (const Shape& shape : shapes)
+        if (name == shape.name)
+            return shape.make();
+    return {};
+}
+
+TriangleMesh box(const Vec3& size, const std::array<int, 3>& cells)
+{
+    TriangleMesh mesh;
+    std::map<std::array<int, 3>, std::uint32_t> known;
+    auto vertex = [&](const std::array<int, 3>& at) {
+        const auto [place, fresh] = known.emplace(at, static_cast<std::uint32_t>(mesh.vertices.size()));
+        if (fresh)
+            mesh.vertices.emplace_back(size[0] * (double(at[0]) / cells[0] - 0.5), size[1] * (double(at[1]) / cells[1] - 0.5), size[2] * (double(at[2]) / cells[2] - 0.5));
+        return place->second;
+    };
+    const bool flat = size[2] == 0;
+    for (std::size_t axis = flat ? 2 : 0; axis < 3; ++axis)
+        for (const int side : {0, 1}) {
+            if (flat && side == 0)
+                continue;
+            const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
+            for (int i = 0; i < cells[u]; ++i)
+                for (int j = 0; j < cells[v]; ++j) {
+                    auto corner = [&](int a, int b) {
+                        std::array<int, 3> at{};
+                        at[axis] = side * cells[axis];
+                        at[u] = i + a;
+                        at[v] = j + b;
+                        return vertex(at);
+                    };
+                    const std::uint32_t a = corner(0, 0), b = corner(1, 0), c = corner(1, 1), d = corner(0, 1);
+                    if (side == 1) {
+                        mesh.triangles.push_back({a, b, c});
+                        mesh.triangles.push_back({a, c, d});
+                    } else {
+                        mesh.triangles.push_back({a, c, b});
+                        mesh.triangles.push_back({a, d, c});
+                    }
+                }
+        }
     return mesh;
 }
 

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/simulation/find_scene.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "toolkit/simulate/frame_file.hpp"
+#include "toolkit/surface/input_error.hpp"
+#include "toolkit/surface/read_mesh.hpp"
+
+namespace cinch {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Beside an installed program, or in the source that it was built from.
+fs::path scene_folder()
+{
+    std::error_code error;
+    const fs::path installed = fs::read_symlink("/proc/self/exe", error).parent_path().parent_path() / "share/cinch/scenes";
+    return !error && fs::is_directory(installed, error) ? installed : fs::path(CINCH_SCENES);
+}
+
+} // namespace
+
+std::vector<std::string> shipped_scenes()
+{
+    std::vector<std::string> names;
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(scene_folder(), error))
+        if (entry.path().extension() == ".json" && entry.path().stem() != "schema")
+            names.push_back(entry.path().stem().string());
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+bool is_scene(const std::string& name)
+{
+    if (fs::path(name).extension() == ".json")
+        return true;
+    const auto known = shipped_scenes();
+    return std::find(known.begin(), known.end(), name) != known.end();
+}
+
+FoundScene find_scene(const std::string& name, const SceneChanges& changes)
+{
+    const bool file = fs::path(name).extension() == ".json";
+    if (!file && !is_scene(name))
+        throw InputError::in_file(name, fmt::format("no such scene; known are {}, or a .json file", fmt::join(shipped_scenes(), ", ")));
+    const fs::path path = file ? fs::path(name) : scene_folder() / (name + ".json");
+    const std::string text = read_bytes(path);
+    FoundScene found{parse_scene(text, file ? name : name + ".json", path.parent_path().string()), file ? name : name + ".json", 0};
+    Scene& scene = found.scene;
+    if (changes.nodes) {
+        bool any = false;
+        for (SceneBody& body : scene.bodies)
+            if (body.nodes > 0) {
+                body.nodes = changes.nodes;
+                any = true;
+            }
+        if (!any)
+            throw InputError::in_file(name, "--nodes needs a body whose simulation nodes are sampled; this scene gives them");
+    }
+    if (changes.duration_s >= 0)
+        scene.duration_s = changes.duration_s;
+    if (changes.step_s > 0)
+        scene.integration.step_s = changes.step_s;
+    if (!changes.integrator.empty())
+        scene.integration.method = changes.integrator == "explicit" ? Integration::Method::explicit_euler : Integration::Method::implicit_euler;
+    // The duration is left out, so that a run can be continued for longer.
+    found.identity = checksum(text + fmt::format("|{}|{}|{}", changes.nodes, changes.step_s, changes.integrator));
+    return found;
+}
+
+} // namespace cinch

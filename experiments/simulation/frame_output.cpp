@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/simulation/frame_output.hpp"
+
+#include <filesystem>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include "toolkit/simulate/stream.hpp"
+#include "toolkit/surface/input_error.hpp"
+#include "toolkit/surface/read_mesh.hpp"
+
+namespace cinch {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr std::string_view magic = "cinchchk1";
+
+bool is_text(const std::string& file) { return file.ends_with(".jsonl"); }
+
+void write_ply(std::ostream& out, const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles)
+{
+    out << "ply\nformat binary_little_endian 1.0\nelement vertex " << vertices.size() << "\nproperty float x\nproperty float y\nproperty float z\nelement face "
+        << triangles.size() << "\nproperty list uchar uint vertex_indices\nend_header\n";
+    for (const Vec3& v : vertices) {
+        const Eigen::Vector3f f = v.cast<float>();
+        out.write(reinterpret_cast<const char*>(f.data()), 12);
+    }
+    for (const Triangle& t : triangles) {
+        out.put(3);
+        out.write(reinterpret_cast<const char*>(t.data()), 12);
+    }
+}
+
+void write_obj(std::ostream& out, const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles)
+{
+    for (const Vec3& v : vertices)
+        out << fmt::format("v {} {} {}\n", v[0], v[1], v[2]);
+    for (const Triangle& t : triangles)
+        out << fmt::format("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1);
+}
+
+std::string json_lines(std::size_t frame, double time_s, const std::vector<std::string>& names, std::span<const std::vector<AffineMap>> maps)
+{
+    std::string out;
+    for (std::size_t b = 0; b < maps.size(); ++b) {
+        out += fmt::format("{{\"frame\":{},\"time_s\":{},\"body\":\"{}\",\"maps\":[", frame, time_s, names[b]);
+        for (std::size_t j = 0; j < maps[b].size(); ++j) {
+            out += j ? ",[" : "[";
+            for (int i = 0; i < 12; ++i)
+                out += fmt::format("{}{}", i ? "," : "", maps[b][j].m[i / 4][i % 4]);
+            out += "]";
+        }
+        out += "]}\n";
+    }
+    return out;
+}
+
+struct Checkpoint {
+    std::uint64_t identity = 0, bytes = 0;
+    std::string state;
+};
+
+// The file's last 8 bytes are a checksum of all before them.
+Checkpoint read_checkpoint(const std::string& file)
+{
+    const std::string bytes = read_bytes(file);
+    Checkpoint checkpoint;
+    if (bytes.size() < magic.size() + 24 || !bytes.starts_with(magic))
+        throw InputError::in_file(file, "is no checkpoint");
+    std::istringstream in(bytes.substr(magic.size()));
+    std::uint64_t sum = 0;
+    std::istringstream end(bytes.substr(bytes.size() - 8));
+    read_raw<std::uint64_t>(end, {&sum, 1});
+    if (sum != checksum(std::string_view(bytes).substr(0, bytes.size() - 8)))
+        throw InputError::in_file(file, "was changed or is cut off");
+    read_raw<std::uint64_t>(in, {&checkpoint.identity, 1});
+    read_raw<std::uint64_t>(in, {&checkpoint.bytes, 1});
+    checkpoint.state = bytes.substr(magic.size() + 16, bytes.size() - magic.size() - 24);
+    return checkpoint;
+}
+
+void require(std::ostream& out, const std::string& file)
+{
+    if (!out)
+        throw InputError::in_file(file, "cannot be written; is the disk full?");
+}
+
+} // namespace
+
+FrameOutput::FrameOutput(const SimulateOptions& options, const FoundScene& scene, Simulation& simulation)
+    : options_(options), identity_(scene.identity), checkpoint_(options.checkpoint.empty() ? options.resume : options.checkpoint)
+{
+    layout_.frame_s = simulation.scene().frame_s;
+    for (Simulation::Body& body : simulation.bodies()) {
+        layout_.nodes.push_back(static_cast<std::uint32_t>(body.simulation.body().size()));
+        names_.push_back(body.name);
+        if (!options.meshes.empty())
+            surface_.push_back(std::make_unique<SurfaceEvaluator>(*body.simulation.surface()));
+    }
+    if (!options.meshes.empty()) {
+        std::error_code error;
+        fs::create_directories(options.meshes, error);
+        if (!fs::is_directory(options.meshes))
+            throw InputError::in_file(options.meshes, "is no folder and cannot be made one");
+    }
+    if (options.resume.empty()) {
+        if (!options.frames.empty()) {
+            frames_.open(options.frames, std::ios::binary | std::ios::trunc);
+            if (!is_text(options.frames))
+                frames_ << frame_header(layout_);
+            require(frames_, options.frames);
+            bytes_ = is_text(options.frames) ? 0 : layout_.header_bytes();
+        }
+        if (!checkpoint_.empty() && !std::ofstream(checkpoint_ + ".new"))
+            throw InputError::in_file(checkpoint_, "cannot be written");
+        return;
+    }
+    const Checkpoint checkpoint = read_checkpoint(options.resume);
+    if (checkpoint.identity != identity_)
+        throw InputError::in_file(options.resume, "is of another scene, or of other settings than these");
+    std::istringstream state(checkpoint.state);
+    simulation.restore(state);
+    bytes_ = checkpoint.bytes;
+    if (options.frames.empty())
+        return;
+    std::error_code error;
+    const std::uintmax_t there = fs::file_size(options.frames, error);
+    if (error || there < bytes_)
+        throw InputError::in_file(options.frames, fmt::format("does not have the {} bytes that {} continues", bytes_, options.resume));
+    fs::resize_file(options.frames, bytes_); // what came after the checkpoint comes again
+    frames_.open(options.frames, std::ios::binary | std::ios::app);
+    require(frames_, options.frames);
+}
+
+void FrameOutput::write(Simulation& simulation)
+{
+    if (options_.frames.empty() && options_.meshes.empty())
+        return;
+    std::vector<std::vector<AffineMap>> maps;
+    for (Simulation::Body& body : simulation.bodies())
+        maps.push_back(body.simulation.frame());
+    if (!options_.frames.empty()) {
+        const std::string record = is_text(options_.frames) ? json_lines(simulation.frame(), simulation.time_s(), names_, maps)
+                                                            : frame_record(layout_, simulation.frame(), simulation.time_s(), maps);
+        frames_ << record;
+        bytes_ += record.size();
+        require(frames_, options_.frames);
+    }
+    if (!options_.meshes.empty())
+        write_meshes(simulation.frame(), maps, simulation);
+}
+
+void FrameOutput::write_meshes(std::size_t frame, std::span<const std::vector<AffineMap>> maps, const Simulation& simulation)
+{
+    for (std::size_t b = 0; b < maps.size(); ++b) {
+        const TriangleMesh& mesh = simulation.bodies()[b].simulation.surface()->mesh;
+        std::vector<Vec3> vertices(mesh.vertices.size());
+        (*surface_[b])(maps[b], vertices);
+        const fs::path file = fs::path(options_.meshes) / fmt::format("{}-{:05}.{}", names_[b], frame, options_.mesh_format);
+        std::ofstream out(file, std::ios::binary);
+        (options_.mesh_format == "obj" ? write_obj : write_ply)(out, vertices, mesh.triangles);
+        out.flush();
+        require(out, file.string());
+    }
+}
+
+void FrameOutput::save(const Simulation& simulation)
+{
+    if (frames_.is_open()) {
+        frames_.flush();
+        require(frames_, options_.frames);
+    }
+    if (checkpoint_.empty())
+        return;
+    std::ostringstream out;
+    out << magic;
+    const std::uint64_t bytes = bytes_;
+    write_raw<std::uint64_t>(out, {&identity_, 1});
+    write_raw<std::uint64_t>(out, {&bytes, 1});
+    simulation.save(out);
+    const std::uint64_t sum = checksum(out.view());
+    write_raw<std::uint64_t>(out, {&sum, 1});
+    const std::string temporary = checkpoint_ + ".new";
+    {
+        std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
+        file << out.view();
+        file.flush();
+        require(file, temporary);
+    }
+    fs::rename(temporary, checkpoint_); // the old one or the new one, never half of one
+}
+
+} // namespace cinch

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <fstream>
+#include <memory>
+
+#include "experiments/simulation/simulate.hpp"
+#include "toolkit/deform/surface_evaluator.hpp"
+#include "toolkit/simulate/frame_file.hpp"
+
+namespace cinch {
+
+/// Writes the frames that a run produces, and checkpoints from which another run writes the rest, byte for byte as if there had been one.
+class FrameOutput {
+public:
+    /// Throws InputError if something cannot be written, or a checkpoint continues no such run; restores `simulation` from one.
+    FrameOutput(const SimulateOptions& options, const FoundScene& scene, Simulation& simulation);
+
+    /// The present state of the simulation as the next frame.
+    void write(Simulation& simulation);
+    /// What is written stays written, and a checkpoint says so.
+    void save(const Simulation& simulation);
+
+    std::size_t bytes() const { return bytes_; } ///< of the file of frames
+
+private:
+    void write_meshes(std::size_t frame, std::span<const std::vector<AffineMap>> maps, const Simulation& simulation);
+
+    SimulateOptions options_;
+    std::uint64_t identity_;
+    std::string checkpoint_;
+    FrameLayout layout_;
+    std::vector<std::string> names_;
+    std::vector<std::unique_ptr<SurfaceEvaluator>> surface_; ///< if there are meshes to write
+    std::ofstream frames_;
+    std::size_t bytes_ = 0;
+};
+
+} // namespace cinch

@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/simulation/simulate.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+
+#include "experiments/report/interrupt.hpp"
+#include "experiments/report/number.hpp"
+#include "experiments/report/progress.hpp"
+#include "experiments/report/provenance.hpp"
+#include "experiments/report/table.hpp"
+#include "experiments/simulation/frame_output.hpp"
+#include "toolkit/surface/input_error.hpp"
+
+namespace cinch {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct BodyTotals {
+    std::size_t steps = 0, iterations = 0, products = 0, projected = 0, at_rounding = 0;
+    double residual = 0;
+    StepReport last;
+};
+
+struct EffectTotals {
+    std::size_t bodies = 0, calls = 0;
+    double seconds = 0;
+};
+
+// By name, in the order in which effects are listed; pins cost nothing that can be told apart.
+std::vector<std::pair<std::string, EffectTotals>> effect_totals(const Simulation& simulation)
+{
+    std::vector<std::pair<std::string, EffectTotals>> totals;
+    for (const std::string& name : effect_names()) {
+        EffectTotals sum;
+        for (const Simulation::Body& body : simulation.bodies()) {
+            bool here = false;
+            for (const BodySimulation::Slot& slot : body.simulation.effects())
+                if (slot.effect->name() == name) {
+                    here = true;
+                    sum.calls += slot.calls;
+                    sum.seconds += slot.seconds;
+                }
+            sum.bodies += here;
+        }
+        if (sum.bodies)
+            totals.emplace_back(name, sum);
+    }
+    return totals;
+}
+
+std::size_t bodies_pinned(const Simulation& simulation, bool scripted)
+{
+    std::size_t count = 0;
+    for (const Simulation::Body& body : simulation.bodies())
+        count += std::any_of(simulation.scene().effects.begin(), simulation.scene().effects.end(), [&](const SceneEffect& e) {
+            const bool is = scripted ? std::holds_alternative<ScriptedSpec>(e.what) : std::holds_alternative<PinnedSpec>(e.what);
+            return is && (e.bodies.empty() || std::find(e.bodies.begin(), e.bodies.end(), body.name) != e.bodies.end());
+        });
+    return count;
+}
+
+struct Result {
+    std::vector<BodyTotals> bodies;
+    std::size_t frames = 0, steps = 0; ///< advanced; steps over all bodies
+    double seconds = 0;
+    std::string failure;
+};
+
+Json energies_of(const Simulation& simulation, const std::string& scene, std::size_t b, const StepReport& r)
+{
+    return {{"experiment", "simulate"}, {"scene", scene}, {"frame", simulation.frame()}, {"time_s", simulation.time_s()}, {"body", simulation.bodies()[b].name},
+            {"substeps", r.substeps}, {"iterations", r.iterations}, {"products", r.products}, {"residual_m_per_s2", r.residual}, {"kinetic_j", r.kinetic}, {"potential_j", r.potential}};
+}
+
+Result run(const SimulateOptions& options, Simulation& simulation, FrameOutput& output)
+{
+    Result result;
+    result.bodies.resize(simulation.bodies().size());
+    if (options.resume.empty())
+        output.write(simulation);
+    output.save(simulation);
+    const std::size_t first = simulation.frame(), last = simulation.frame_count() - 1;
+    Progress progress("simulating frames", last > first ? last - first : 0);
+    while (simulation.frame() < last && !interrupted()) {
+        const auto before = std::chrono::steady_clock::now();
+        const std::vector<StepReport> reports = simulation.advance();
+        result.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
+        for (std::size_t b = 0; b < reports.size(); ++b) {
+            const StepReport& r = reports[b];
+            if (!r.failure.empty() && result.failure.empty())
+                result.failure = fmt::format("body '{}' at {:.6g} s: {}", simulation.bodies()[b].name, simulation.time_s(), r.failure);
+        }
+        if (!result.failure.empty())
+            break;
+        for (std::size_t b = 0; b < reports.size(); ++b) {
+            const StepReport& r = reports[b];
+            BodyTotals& t = result.bodies[b];
+            t.steps += static_cast<std::size_t>(r.substeps);
+            t.iterations += static_cast<std::size_t>(r.iterations);
+            t.products += static_cast<std::size_t>(r.products);
+            t.projected += static_cast<std::size_t>(r.projected);
+            t.at_rounding += r.at_rounding;
+            t.residual = std::max(t.residual, r.residual);
+            t.last = r;
+            result.steps += static_cast<std::size_t>(r.substeps);
+            if (options.energies && options.json)
+                fmt::print("{}\n", energies_of(simulation, options.scene, b, r).dump());
+        }
+        ++result.frames;
+        output.write(simulation);
+        if (simulation.frame() % options.every == 0)
+            output.save(simulation);
+        progress.done(simulation.frame() - first);
+    }
+    output.save(simulation);
+    return result;
+}
+
+double ms_per_step(double seconds, const Result& result) { return result.steps ? 1e3 * seconds / static_cast<double>(result.steps) : 0; }
+
+void print_json(const SimulateOptions& options, const Simulation& simulation, const Result& result, const Provenance& from)
+{
+    std::vector<std::string> names;
+    const auto effects = effect_totals(simulation);
+    for (const auto& [name, totals] : effects)
+        names.push_back(name);
+    if (bodies_pinned(simulation, false))
+        names.push_back("pinned");
+    if (bodies_pinned(simulation, true))
+        names.push_back("scripted");
+    double shared = 0;
+    std::size_t nodes = 0;
+    for (const Simulation::Body& body : simulation.bodies()) {
+        shared += body.simulation.shared_seconds();
+        nodes += body.simulation.body().size();
+    }
+    fmt::print("{}\n", Json{{"experiment", "simulate"}, {"scene", options.scene}, {"effects", names}, {"bodies", simulation.bodies().size()}, {"nodes", nodes},
+                            {"frames", result.frames}, {"steps", result.steps}, {"ms_per_step", ms_per_step(result.seconds * from.threads, result)}, {"time_s", simulation.time_s()},
+                            {"failure", result.failure}, {"version", from.version}, {"commit", from.commit}, {"compiler", from.compiler}, {"flags", from.flags},
+                            {"cpu", from.cpu}, {"simd", from.simd}, {"threads", from.threads}, {"seed", from.seed}}
+                           .dump());
+    for (const auto& [name, totals] : effects)
+        fmt::print("{}\n", Json{{"experiment", "simulate"}, {"scene", options.scene}, {"effect", name}, {"bodies", totals.bodies}, {"calls", totals.calls},
+                                {"ms_per_step", ms_per_step(totals.seconds, result)}}
+                               .dump());
+    fmt::print("{}\n", Json{{"experiment", "simulate"}, {"scene", options.scene}, {"effect", "shared: J and the transport of stresses"}, {"ms_per_step", ms_per_step(shared, result)}}.dump());
+}
+
+void print_tables(const SimulateOptions& options, const Simulation& simulation, const Result& result, const Provenance& from)
+{
+    const Integration& integration = simulation.scene().integration;
+    const bool is_explicit = integration.method == Integration::Method::explicit_euler;
+    std::size_t vertices = 0, nodes = 0, neighbours = 0;
+    for (const Simulation::Body& body : simulation.bodies()) {
+        vertices += body.simulation.surface()->mesh.vertices.size();
+        nodes += body.simulation.body().size();
+        neighbours += body.simulation.body().neighbour.size();
+    }
+    fmt::print("{}: {}\n", options.scene, simulation.scene().about);
+    fmt::print("{}, {}, {}, {:.1f} neighbours each\n", counted(simulation.bodies().size(), "body", "bodies"), counted(vertices, "vertex", "vertices"),
+               counted(nodes, "simulation node", "simulation nodes"), static_cast<double>(neighbours) / static_cast<double>(nodes));
+    std::map<std::string, std::size_t> notes;
+    for (const Simulation::Body& body : simulation.bodies())
+        for (const std::string& note : body.notes)
+            ++notes[note];
+    for (const auto& [note, count] : notes)
+        fmt::print("note: {}{}\n", note, count > 1 ? fmt::format(" (each of {} bodies)", count) : "");
+    fmt::print("\n{} to {:.3f} s, {} Euler, {} of bodies ({:.3f} ms each)\n\n", counted(result.frames, "frame", "frames"), simulation.time_s(),
+               is_explicit ? "symplectic" : "implicit", counted(result.steps, "step", "steps"), ms_per_step(result.seconds * from.threads, result));
+
+    std::vector<std::vector<std::string>> rows;
+    double shared = 0;
+    for (const Simulation::Body& body : simulation.bodies())
+        shared += body.simulation.shared_seconds();
+    for (const auto& [name, totals] : effect_totals(simulation))
+        rows.push_back({name, std::to_string(totals.bodies), grouped(totals.calls), fmt::format("{:.4f}", ms_per_step(totals.seconds, result))});
+    for (const bool scripted : {false, true})
+        if (const std::size_t count = bodies_pinned(simulation, scripted))
+            rows.push_back({scripted ? "scripted" : "pinned", std::to_string(count), "-", "-"});
+    rows.push_back({"shared", "", "", fmt::format("{:.4f}", ms_per_step(shared, result))});
+    fmt::print("{}shared: computing J, and carrying stresses to the nodes\n\n", table({"effect", "bodies", "calls", "ms per step"}, rows));
+
+    rows.clear();
+    for (std::size_t b = 0; b < result.bodies.size(); ++b) {
+        const BodyTotals& t = result.bodies[b];
+        const double steps = std::max<double>(1, static_cast<double>(t.steps));
+        std::vector<std::string> row{simulation.bodies()[b].name, grouped(t.steps)};
+        if (!is_explicit)
+            for (const std::string& cell : {fmt::format("{:.1f}", static_cast<double>(t.iterations) / steps), fmt::format("{:.0f}", static_cast<double>(t.products) / steps),
+                                            grouped(t.projected), fmt::format("{:.1e}", t.residual)})
+                row.push_back(cell);
+        row.push_back(fmt::format("{:.4g}", t.last.kinetic));
+        row.push_back(fmt::format("{:.4g}", t.last.potential));
+        rows.push_back(std::move(row));
+        if (b == 11 && result.bodies.size() > 13)
+            break;
+    }
+    std::vector<std::string> header{"body", "steps"};
+    if (!is_explicit)
+        for (const char* name : {"Newton", "CG", "mended", "residual"})
+            header.emplace_back(name);
+    header.emplace_back("kinetic J");
+    header.emplace_back("potential J");
+    fmt::print("{}", table(header, rows));
+    if (rows.size() < result.bodies.size())
+        fmt::print("and {} more bodies\n", result.bodies.size() - rows.size());
+    if (!is_explicit)
+        fmt::print("Newton, CG: iterations and Hessian products per step. mended: iterations whose\n"
+                   "Hessian had to be made semidefinite. residual: largest left, m/s2.\n");
+    if (options.explain) {
+        fmt::print("\nLeft out of this scene, and so never constructed:");
+        for (const std::string& name : effect_names()) {
+            const bool pin = name == "pinned" || name == "scripted";
+            const bool absent = pin ? bodies_pinned(simulation, name == "scripted") == 0 : Effect::constructed(name) == 0;
+            if (absent)
+                fmt::print(" {}", name);
+        }
+        bool needs = false;
+        for (const Simulation::Body& body : simulation.bodies())
+            for (const BodySimulation::Slot& slot : body.simulation.effects())
+                needs |= slot.effect->needs_deformation();
+        fmt::print("\nJ is computed {}.\n", needs ? "in every evaluation: an effect needs it" : "only for frames: no effect needs it");
+        for (const auto& [name, totals] : effect_totals(simulation))
+            fmt::print("{}: {} constructed, {} calls\n", name, Effect::constructed(name), grouped(totals.calls));
+    }
+    fmt::print("\n{}\n", describe(from));
+}
+
+} // namespace
+
+int simulate(const SimulateOptions& options)
+{
+    const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+    if (options.every == 0)
+        throw InputError("--every must be at least 1");
+    const FoundScene found = find_scene(options.scene, options.changes);
+    Simulation simulation(found.scene, found.file);
+    FrameOutput output(options, found, simulation);
+    catch_interrupt();
+    const Result result = run(options, simulation, output);
+    (options.json ? print_json : print_tables)(options, simulation, result, provenance(threads, 0));
+    std::fflush(stdout);
+    if (!result.failure.empty()) {
+        fmt::print(stderr, "cinch: {}\n", result.failure);
+        return 1;
+    }
+    if (simulation.frame() + 1 < simulation.frame_count()) {
+        fmt::print(stderr, "cinch: interrupted at frame {} of {}\n", simulation.frame(), simulation.frame_count() - 1);
+        return 130;
+    }
+    return 0;
+}
+
+} // namespace cinch

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <optional>
+#include <set>
+
+#include <nlohmann/json.hpp>
+
+#include "toolkit/surface/input_error.hpp"
+#include "toolkit/surface/triangle_mesh.hpp"
+
+namespace cinch {
+
+/// The fields of a JSON object that know where they stand, so that every complaint names file and path. Fields that nobody asked for
+/// are complained about by finish().
+class JsonFields {
+public:
+    using Json = nlohmann::json;
+
+    JsonFields(const Json& json, std::string file, std::string path) : json_(&json), file_(std::move(file)), path_(std::move(path))
+    {
+        if (!json.is_object())
+            fail("", "an object", json);
+    }
+
+    [[noreturn]] void fail(const std::string& key, const std::string& expected, const Json& found) const
+    {
+        std::string text = found.dump();
+        if (text.size() > 60)
+            text = text.substr(0, 57) + "...";
+        throw InputError::in_file(file_, place(key) + ": expected " + expected + ", found " + text);
+    }
+    [[noreturn]] void complain(const std::string& key, const std::string& what) const { throw InputError::in_file(file_, place(key) + ": " + what); }
+
+    std::string place(const std::string& key) const { return key.empty() ? (path_.empty() ? "/" : path_) : path_ + "/" + key; }
+    bool has(const std::string& key) const { return json_->contains(key); }
+    const std::string& file() const { return file_; }
+
+    const Json* find(const std::string& key)
+    {
+        asked_.insert(key);
+        const auto it = json_->find(key);
+        return it == json_->end() ? nullptr : &*it;
+    }
+    const Json& need(const std::string& key)
+    {
+        const Json* json = find(key);
+        if (!json)
+            throw InputError::in_file(file_, place(key) + ": is missing");
+        return *json;
+    }
+
+    /// A finite number in [least, most], or above `least` where `open`.
+    struct Range {
+        double least = -HUGE_VAL, most = HUGE_VAL;
+        bool open = false;
+        const char* expected = "a number";
+    };
+    static constexpr Range any() { return {}; }
+    static constexpr Range positive() { return {0, HUGE_VAL, true, "a number > 0"}; }
+    static constexpr Range not_negative() { return {0, HUGE_VAL, false, "a number >= 0"}; }
+
+    double number(const std::string& key, const Range& range) { return number_of(key, need(key), range); }
+    double number(const std::string& key, const Range& range, double otherwise)
+    {
+        const Json* json = find(key);
+        return json ? number_of(key, *json, range) : otherwise;
+    }
+    std::size_t count(const std::string& key, std::size_t least, std::size_t most, std::optional<std::size_t> otherwise = {})
+    {
+        const Json* json = otherwise ? find(key) : &need(key);
+        return json ? count_of(key, *json, least, most) : *otherwise;
+    }
+    std::string text(const std::string& key, std::optional<std::string> otherwise = {})
+    {
+        const Json* json = otherwise ? find(key) : &need(key);
+        if (!json)
+            return *otherwise;
+        if (!json->is_string())
+            fail(key, "a string", *json);
+        return json->get<std::string>();
+    }
+    bool flag(const std::string& key, bool otherwise)
+    {
+        const Json* json = find(key);
+        if (!json)
+            return otherwise;
+        if (!json->is_boolean())
+            fail(key, "true or false", *json);
+        return json->get<bool>();
+    }
+    Vec3 vector(const std::string& key) { return vector_of(key, need(key)); }
+    Vec3 vector(const std::string& key, const Vec3& otherwise)
+    {
+        const Json* json = find(key);
+        return json ? vector_of(key, *json) : otherwise;
+    }
+    Vec3 vector_of(const std::string& key, const Json& json) const
+    {
+        if (!json.is_array() || json.size() != 3)
+            fail(key, "an array of 3 numbers", json);
+        Vec3 v;
+        for (std::size_t i = 0; i < 3; ++i)
+            v[static_cast<Eigen::Index>(i)] = number_of(key + "/" + std::to_string(i), json[i], any());
+        return v;
+    }
+    Vec3 direction(const std::string& key) ///< a vector of some length
+    {
+        const Vec3 v = vector(key);
+        if (!(v.stableNorm() > 0))
+            complain(key, "must not be 0");
+        return v;
+    }
+    const Json& array(const std::string& key)
+    {
+        const Json& json = need(key);
+        if (!json.is_array())
+            fail(key, "an array", json);
+        return json;
+    }
+    std::size_t count_of(const std::string& key, const Json& json, std::size_t least, std::size_t most) const
+    {
+        const std::string expected = "a whole number from " + std::to_string(least) + " to " + std::to_string(most);
+        if (!json.is_number_unsigned() || json.get<std::uint64_t>() < least || json.get<std::uint64_t>() > most)
+            fail(key, expected, json);
+        return json.get<std::size_t>();
+    }
+    double number_of(const std::string& key, const Json& json, const Range& range) const
+    {
+        if (!json.is_number())
+            fail(key, range.expected, json);
+        const double value = json.get<double>();
+        if (!std::isfinite(value) || value < range.least || value > range.most || (range.open && value == range.least))
+            fail(key, range.expected, json);
+        return value;
+    }
+    void finish() const
+    {
+        for (const auto& [key, value] : json_->items())
+            if (!asked_.count(key)) {
+                std::string known;
+                for (const std::string& k : asked_)
+                    known += (known.empty() ? "" : ", ") + k;
+                throw InputError::in_file(file_, place(key) + ": is unknown; known here are " + known);
+            }
+    }
+
+private:
+    const Json* json_;
+    std::string file_, path_;
+    std::set<std::string> asked_;
+};
+
+} // namespace cinch

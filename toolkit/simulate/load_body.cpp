@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "toolkit/simulate/load_body.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "toolkit/deform/sample_nodes.hpp"
+#include "toolkit/surface/character.hpp"
+#include "toolkit/surface/read_mesh.hpp"
+#include "toolkit/surface/shapes.hpp"
+
+namespace cinch {
+namespace {
+
+std::size_t nearest(std::span<const Vec3> places, const Vec3& p)
+{
+    std::size_t best = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < places.size(); ++i)
+        if (const double squared = (places[i] - p).squaredNorm(); squared < least) {
+            least = squared;
+            best = i;
+        }
+    return best;
+}
+
+// A point moves as the surface's nearest vertex does: by that vertex's blend of joint maps, between two samples of the clip.
+struct SkinPath {
+    Clip clip;
+    Weights skin;
+    std::vector<Vec3> point;
+    std::vector<std::uint32_t> vertex;
+
+    Vec3 at_sample(std::size_t node, std::size_t frame) const
+    {
+        Vec3 sum = Vec3::Zero();
+        const Weights::Row row = skin.of(vertex[node]);
+        for (std::size_t e = 0; e < row.node.size(); ++e) {
+            const auto& m = clip.frames[frame][row.node[e]].m;
+            for (int r = 0; r < 3; ++r)
+                sum[r] += row.weight[e] * (m[r][0] * point[node][0] + m[r][1] * point[node][1] + m[r][2] * point[node][2] + m[r][3]);
+        }
+        return sum;
+    }
+    Vec3 operator()(std::size_t node, double time_s) const
+    {
+        const std::vector<double>& t = clip.time_s;
+        const double now = t.front() + time_s;
+        const auto above = static_cast<std::size_t>(std::upper_bound(t.begin(), t.end(), now) - t.begin());
+        if (above == 0 || above >= t.size())
+            return at_sample(node, above == 0 ? 0 : t.size() - 1);
+        const double s = (now - t[above - 1]) / (t[above] - t[above - 1]);
+        return (1 - s) * at_sample(node, above - 1) + s * at_sample(node, above);
+    }
+};
+
+bool is_character(const std::string& name) { return name.ends_with(".glb") || name.ends_with(".gltf"); }
+
+[[noreturn]] void complain(const std::string& file, const SceneBody& body, const std::string& field, const std::string& what)
+{
+    throw InputError::in_file(file, body.path + "/" + field + ": " + what);
+}
+
+TriangleMesh load_mesh(const SceneBody& body, const std::string& file)
+{
+    if (body.surface == "box" || body.surface == "sheet")
+        return box(body.surface == "box" ? body.box_m : Vec3(body.box_m[0], body.box_m[1], 0), body.cells);
+    if (auto shape = named_shape(body.surface))
+        return std::move(*shape);
+    if (!is_mesh_file(body.surface)) {
+        std::string known;
+        for (const std::string& name : shape_names())
+            known += name + ", ";
+        complain(file, body, "surface", "'" + body.surface + "' is no shape (" + known + "box, sheet) and no mesh or character file");
+    }
+    TriangleMesh mesh = read_mesh(body.surface);
+    if (mesh.vertices.empty() || mesh.triangles.empty())
+        complain(file, body, "surface", body.surface + " has no triangles");
+    return mesh;
+}
+
+std::vector<Vec3> lattice(const SceneBody& body)
+{
+    std::vector<Vec3> nodes;
+    const auto& n = body.lattice;
+    for (int i = 0; i < n[0]; ++i)
+        for (int j = 0; j < n[1]; ++j)
+            for (int k = 0; k < n[2]; ++k)
+                nodes.emplace_back(body.box_m[0] * ((i + 0.5) / n[0] - 0.5), body.box_m[1] * ((j + 0.5) / n[1] - 0.5),
+                                   body.surface == "sheet" ? 0 : body.box_m[2] * ((k + 0.5) / n[2] - 0.5));
+    return nodes;
+}
+
+} // namespace
+
+LoadedBody load_body(const SceneBody& body, const std::string& file)
+{
+    LoadedBody loaded;
+    TriangleMesh& mesh = loaded.surface.mesh;
+    std::optional<Character> character;
+    if (is_character(body.surface)) {
+        if (body.size_m > 0)
+            complain(file, body, "size", "a character keeps its own size");
+        character = read_gltf(body.surface);
+        mesh = character->mesh;
+        if (mesh.triangles.empty())
+            complain(file, body, "surface", body.surface + " has no skinned triangles");
+    } else {
+        mesh = load_mesh(body, file);
+        if (body.size_m > 0)
+            centre_and_scale(mesh, body.size_m);
+    }
+
+    double fill = 0;
+    if (body.nodes > 0) {
+        const SimulationNodes sampled = sample_nodes(mesh, body.nodes, body.seed);
+        loaded.nodes = sampled.position;
+        fill = sampled.fill_distance;
+        if (sampled.position.size() < body.nodes)
+            loaded.notes.push_back("only " + std::to_string(sampled.position.size()) + " distinct places for simulation nodes");
+    } else {
+        loaded.nodes = body.places.empty() ? lattice(body) : body.places;
+        for (const Vec3& v : mesh.vertices)
+            fill = std::max(fill, (v - loaded.nodes[nearest(loaded.nodes, v)]).norm());
+    }
+    std::size_t alone = 0;
+    loaded.surface.weights = kernel_weights(mesh, {loaded.nodes, fill}, 2, &alone);
+    if (alone)
+        loaded.notes.push_back(std::to_string(alone) + " vertices lie beyond the reach of every simulation node; each follows its nearest one");
+
+    if (body.surface == "box" || body.surface == "sheet") {
+        const double volume = body.box_m[0] * body.box_m[1] * (body.surface == "sheet" ? body.thickness_m : body.box_m[2]);
+        if (body.lattice[0] > 0)
+            loaded.volume.assign(loaded.nodes.size(), volume / static_cast<double>(loaded.nodes.size()));
+        loaded.total_volume = volume;
+    } else {
+        loaded.total_volume = std::abs(signed_volume(mesh));
+    }
+    if (loaded.volume.empty() && !body.volume_by_density) {
+        loaded.volume = cell_volumes(mesh, loaded.nodes);
+        if (loaded.volume.empty())
+            loaded.notes.push_back("the surface encloses no volume; the nodes' volumes follow from their density");
+    }
+
+    if (character && !character->animations.empty()) {
+        const Character::Animation* chosen = nullptr;
+        std::string known;
+        for (const Character::Animation& animation : character->animations) {
+            known += (known.empty() ? "" : ", ") + animation.name;
+            if (!chosen && (body.clip.empty() || animation.name == body.clip))
+                chosen = &animation;
+        }
+        if (!chosen)
+            complain(file, body, "clip", body.surface + " has no clip '" + body.clip + "'; it has " + known);
+        auto path = std::make_shared<SkinPath>();
+        path->clip = sample(*character, *chosen, 60);
+        path->skin = to_dyadic(character->influences);
+        path->point = loaded.nodes;
+        for (const Vec3& p : loaded.nodes)
+            path->vertex.push_back(static_cast<std::uint32_t>(nearest(mesh.vertices, p)));
+        loaded.clip = [path](std::size_t node, double time_s) { return (*path)(node, time_s); };
+    } else if (!body.clip.empty()) {
+        complain(file, body, "clip", "only an animated character has clips");
+    }
+    return loaded;
+}
+
+std::vector<std::uint32_t> select_nodes(const NodeSelection& selection, std::span<const Vec3> nodes, const std::string& file, const std::string& path,
+                                        const std::string& body)
+{
+    std::vector<std::uint32_t> chosen;
+    auto where = [&](auto&& inside) {
+        for (std::size_t i = 0; i < nodes.size(); ++i)
+            if (inside(nodes[i]))
+                chosen.push_back(static_cast<std::uint32_t>(i));
+    };
+    if (std::holds_alternative<EveryNode>(selection)) {
+        where([](const Vec3&) { return true; });
+    } else if (const auto* in_box = std::get_if<NodesInBox>(&selection)) {
+        where([&](const Vec3& p) { return (p.array() >= in_box->low.array()).all() && (p.array() <= in_box->high.array()).all(); });
+    } else if (const auto* ball = std::get_if<NodesInBall>(&selection)) {
+        where([&](const Vec3& p) { return (p - ball->centre).norm() <= ball->radius; });
+    } else if (const auto* index = std::get_if<NodesByIndex>(&selection)) {
+        for (const std::uint32_t i : index->index) {
+            if (i >= nodes.size())
+                throw InputError::in_file(file, path + "/nodes/index: body '" + body + "' has simulation nodes 0 to " + std::to_string(nodes.size() - 1) + ", not " + std::to_string(i));
+            chosen.push_back(i);
+        }
+        std::sort(chosen.begin(), chosen.end());
+        chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
+    } else if (const auto* near = std::get_if<NearestNodes>(&selection)) {
+        std::vector<std::uint32_t> order(nodes.size());
+        std::iota(order.begin(), order.end(), 0u);
+        std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return (nodes[a] - near->point).squaredNorm() < (nodes[b] - near->point).squaredNorm(); });
+        order.resize(std::min(order.size(), near->count));
+        std::sort(order.begin(), order.end());
+        chosen = order;
+    }
+    if (chosen.empty())
+        throw InputError::in_file(file, path + "/nodes: selects no simulation node of body '" + body + "'");
+    return chosen;
+}
+
+} // namespace cinch

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "toolkit/simulate/scene.hpp"
+
+namespace cinch {
+
+/// A body's surface at rest, its nodes, and for a character where its clip takes a point that lies in it.
+struct LoadedBody {
+    DeformableSurface surface;
+    std::vector<Vec3> nodes;
+    std::vector<double> volume; ///< per node; empty: by density
+    double total_volume = 0;    ///< to which volumes by density are scaled; 0: they are not
+    std::vector<std::string> notes;
+    std::function<Vec3(std::size_t node, double time_s)> clip; ///< empty where there is none
+};
+
+/// Throws InputError with file and path.
+LoadedBody load_body(const SceneBody& body, const std::string& file);
+
+/// Indices of the nodes, ascending. Throws InputError if there are none, or one that is not there.
+std::vector<std::uint32_t> select_nodes(const NodeSelection& selection, std::span<const Vec3> nodes, const std::string& file, const std::string& path,
+                                        const std::string& body);
+
+} // namespace cinch
