@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+#include <limits>
+
+#include <catch2/catch.hpp>
+
+#include "tests/collide/pair_cases.hpp"
+
+using namespace cinch;
+using namespace cinch::test;
+
+namespace {
+
+struct Random {
+    std::mt19937_64 bits;
+    double unit() { return std::ldexp(static_cast<double>(bits() >> 11), -53); }
+    double symmetric() { return 2 * unit() - 1; }
+    Vec3 point() { return {symmetric(), symmetric(), symmetric()}; }
+    std::size_t below(std::size_t n) { return bits() % n; }
+    /// A point of the triangle, or of its plane, rounded: at a corner, on an edge or anywhere.
+    Vec3 point_of(const TrianglePoints& t)
+    {
+        const std::size_t i = below(3);
+        const double s = unit();
+        switch (below(4)) {
+        case 0: return t[i];
+        case 1: return t[i] + s * (t[(i + 1) % 3] - t[i]);
+        case 2: return t[0] + s * (t[1] - t[0]) + (1 - s) * unit() * (t[2] - t[0]);
+        default: return t[0] + 2 * symmetric() * (t[1] - t[0]) + 2 * symmetric() * (t[2] - t[0]);
+        }
+    }
+    /// Moved by a few units in the last place, or not.
+    Vec3 nudged(Vec3 v)
+    {
+        for (double& x : v)
+            for (std::size_t steps = below(3); steps > 0; --steps)
+                x = std::nextafter(x, below(2) ? 2.0 : -2.0);
+        return v;
+    }
+};
+
+/// A triangle that touches `a` up to rounding: with a vertex on it, an edge through a point of it, two or three vertices in its plane.
+TrianglePoints near_touching(Random& random, const TrianglePoints& a)
+{
+    const Vec3 x = random.point_of(a), d = random.point();
+    switch (random.below(6)) {
+    case 0: return {random.nudged(x), random.point(), random.point()};
+    case 1: return {x + random.unit() * d, x - random.unit() * d, random.point()};
+    case 2: return {random.nudged(x), random.nudged(random.point_of(a)), random.point()};
+    case 3: return {random.nudged(x), random.nudged(random.point_of(a)), random.nudged(random.point_of(a))};
+    case 4: return {x, random.nudged(x), random.point_of(a)}; // a sliver
+    default: return {x, x, random.below(2) ? random.point() : random.point_of(a)}; // a segment
+    }
+}
+
+void check(const TrianglePoints& a, const TrianglePoints& b, bool expected)
+{
+    if (const int wrong = wrong_orders(a, b, expected))
+        FAIL_CHECK(wrong << " of 72 orders are wrong, " << (expected ? "intersecting: " : "disjoint: ") << text(a, b));
+}
+
+} // namespace
+
+TEST_CASE("triangle pairs agree with an exact clipper in every order: touching up to rounding, and flat")
+{
+    Random random{std::mt19937_64(3)};
+    std::array<int, 2> answers{};
+    OrientationCounts counts;
+    for (int i = 0; i < 20000; ++i) {
+        TrianglePoints a{random.point(), random.point(), random.point()};
+        if (i % 5 == 0)
+            a[2] = a[0] + random.unit() * (a[1] - a[0]); // collinear up to rounding
+        if (i % 11 == 0)
+            a[2] = a[i % 2 ? 1 : 0]; // exactly
+        if (i % 7 == 0)
+            for (Vec3& v : a)
+                v[i % 3] = 0.3; // its plane is exact
+        TrianglePoints b = near_touching(random, a);
+        if (i % 14 == 0)
+            for (Vec3& v : b)
+                v[i % 3] = 0.3;
+        const bool expected = exact_intersect(a, b);
+        ++answers[expected];
+        check(a, b, expected);
+        intersect(a, b, &counts);
+    }
+    CHECK(answers[0] > 2000);
+    CHECK(answers[1] > 2000);
+    CHECK(counts.in_double > 20000);
+    CHECK(counts.in_expansion > 20000);
+    CHECK(counts.in_integer == 0);
+}
+
+TEST_CASE("a power of two per axis does not change the answer, down to subnormals and up to overflow")
+{
+    std::mt19937_64 random(4);
+    OrientationCounts counts;
+    std::vector<Vec3> scales{{1, 0x1p-1074, 0x1p1020}, {0x1p-330, 0x1p330, 1}, {0x1p-1000, 1, 0x1p-1074}};
+    for (double scale : {0x1p-1074, 0x1p-1000, 0x1p-340, 0x1p-200, 0x1p200, 0x1p340, 0x1p1000, 0x1p1020})
+        scales.push_back(Vec3::Constant(scale));
+    for (int i = 0; i < 100000; ++i) {
+        // Below 8·2^1020: coordinates are finite, differences are not.
+        const SmallTriangle a = collapse(random_triangle(random, 3), 1 + i % 6), b = collapse(random_triangle(random, 3), 1 + i / 6 % 6);
+        const bool expected = Clipper<Int128>::intersect(integers(a), integers(b));
+        const Vec3& scale = scales[static_cast<std::size_t>(i) % scales.size()];
+        if (intersect(doubles(a, scale), doubles(b, scale), &counts) != expected)
+            FAIL_CHECK("scale " << scale.transpose() << " " << text(doubles(a), doubles(b)));
+    }
+    CHECK(counts.in_double > 10000);
+    CHECK(counts.in_expansion > 10000);
+    CHECK(counts.in_integer > 10000);
+}
+
+TEST_CASE("triangle pairs agree with an exact clipper in every order: all magnitudes in one triangle")
+{
+    Random random{std::mt19937_64(5)};
+    using limits = std::numeric_limits<double>;
+    std::array<int, 2> answers{};
+    for (int i = 0; i < 1500; ++i) {
+        const double anchors[] = {0, 1, 0x1p-1074, 3 * 0x1p-1074, 1e-310, limits::min(), 1e-300, 1e300, limits::max(), 0.1};
+        const std::size_t few = 2 + random.below(3), offset = random.below(10);
+        std::array<TrianglePoints, 2> t;
+        for (TrianglePoints& triangle : t)
+            for (Vec3& v : triangle)
+                for (double& x : v)
+                    x = anchors[(offset + 3 * random.below(few)) % 10] * (random.below(2) ? 1 : -1) * (random.below(3) ? 1 : random.unit());
+        const bool expected = exact_intersect(t[0], t[1]);
+        ++answers[expected];
+        check(t[0], t[1], expected);
+    }
+    CHECK(answers[0] > 150);
+    CHECK(answers[1] > 150);
+}
