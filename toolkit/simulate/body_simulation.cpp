@@ -95,6 +95,8 @@ void BodySimulation::assemble(const Configuration& c, Parts parts)
         else if (parts == Parts::all || !slot.effect->dissipates())
             timed(slot, [&](const Effect& effect) { effect.add_curvature(c, {local_, block_}); });
     }
+    if (needs_deformation_ && !body_.deficient.empty() && completion_ == Completion::on)
+        complete_curvature(body_, c.deformation, parts == Parts::all ? stress_ : MatrixField(), local_);
     if (parts == Parts::damping)
         return;
     for (Slot& slot : effects_)
@@ -179,6 +181,7 @@ StepReport BodySimulation::advance(double dt_s, const Integration& integration)
 {
     if (!(dt_s >= 0) || !std::isfinite(dt_s))
         throw std::invalid_argument("advance: the time step must be finite and not negative");
+    const auto start = Clock::now();
     completion_ = integration.completion;
     StepReport report;
     if (dt_s == 0) {
@@ -198,6 +201,7 @@ StepReport BodySimulation::advance(double dt_s, const Integration& integration)
     else
         ImplicitStep(*this, integration).advance(dt_s, step, report);
     report.dt_s = dt_s;
+    report.seconds = since(start);
     if (!report.failure.empty()) {
         x_ = x;
         v_ = v;

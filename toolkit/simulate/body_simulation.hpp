@@ -33,6 +33,7 @@ struct StepReport {
     double residual = 0;     ///< m/s², see tolerance; 0 for the explicit integrator
     bool at_rounding = false; ///< the residual is what rounding leaves, above the tolerance
     double kinetic = 0, potential = 0; ///< J, at the end
+    double seconds = 0;      ///< of wall time
     std::string failure;     ///< why it could not be made; the state is that before it
 };
 
@@ -84,6 +85,7 @@ private:
     Configuration configure(const Field& x, double time_s);
     void add_forces(const Configuration& c, Field& force, std::optional<std::size_t> only = {});
     enum class Parts { all, stiffness, damping }; ///< of the second derivatives: all, of what does not dissipate, by velocity
+    /// With Parts::all, add_forces must have been called for the same configuration before.
     void assemble(const Configuration& c, Parts parts);
     /// out += −K p of what assemble() found; add_local_product leaves out what is not local to a node.
     void add_product(const Configuration& c, const Field& p, Field& out);

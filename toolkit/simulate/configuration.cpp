@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "toolkit/simulate/configuration.hpp"
 
+#include <cmath>
+
 #include <Eigen/Geometry>
 
 namespace cinch {
@@ -41,6 +43,36 @@ void complete(const MeshlessBody& body, MatrixField& deformation, Completion com
         } else {
             j = Mat3::Identity();
         }
+    }
+}
+
+void complete_curvature(const MeshlessBody& body, const MatrixField& deformation, const MatrixField& stress, std::vector<Mat9>& local)
+{
+    for (std::size_t d = 0; d < body.deficient.size(); ++d) {
+        const std::size_t i = body.deficient[d];
+        const int rank = body.rank[i];
+        if (rank == 0)
+            continue;
+        const Mat3& frame = body.frame[d];
+        const Mat3 j = matrix_at(deformation, i);
+        const Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 2> g = j * frame.leftCols(rank);
+        const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 2, 2> metric = g.transpose() * g;
+        if (!(std::abs(metric.determinant()) > 1e-12 * metric.squaredNorm()))
+            continue; // collapsed: the normal has no derivative
+        const Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 2> dual = g * metric.inverse();
+        Mat9 l = Mat9::Identity(), curvature = Mat9::Zero();
+        for (int a = rank; a < 3; ++a) {
+            const Vec3 n = frame.col(a), m = j * n;
+            Eigen::Matrix<double, 3, 9> turn = Eigen::Matrix<double, 3, 9>::Zero(); // stacked(dG) ↦ dm
+            for (int t = 0; t < rank; ++t)
+                for (int c = 0; c < 3; ++c)
+                    turn.block<3, 3>(0, 3 * c) -= frame(c, t) * dual.col(t) * m.transpose();
+            for (int c = 0; c < 3; ++c)
+                l.block<3, 9>(3 * c, 0) += n[c] * turn;
+            if (!stress.empty())
+                curvature += m.dot(matrix_at(stress, i) * n) * turn.transpose() * turn; // −v P: the minus is in it
+        }
+        local[i] = l.transpose() * local[i] * l + curvature;
     }
 }
 

@@ -27,6 +27,11 @@ NeighbourLists lists_of(const MeshlessBody& body);
 /// rotation; rank 0: I), so that rotations stay free of strain. `deformation` holds G on entry.
 void complete(const MeshlessBody& body, MatrixField& deformation, Completion completion = Completion::on);
 
+/// The local second derivatives in G instead of J, for the nodes of rank < 3. A null direction n, carried to m = J n ⟂ G t_α, turns with
+/// G: dm = −Σ_α g^α (m · dG t_α), g^α dual to G t_α. As isotropic stresses have P n ∥ m, the forces need no such term, but
+/// H ← Lᵀ H L − p Mᵀ M does, with L: dG ↦ dJ, M: dG ↦ dm and p = m·P n. `stress` holds −v P, or nothing, for p = 0.
+void complete_curvature(const MeshlessBody& body, const MatrixField& deformation, const MatrixField& stress, std::vector<Mat9>& local);
+
 /// T_j of every node: A = J_j, t = X_j − J_j x_j. Moves a surface by Eq. 3.
 std::vector<AffineMap> transforms(const MeshlessBody& body, const Field& x, const MatrixField& deformation);
 

@@ -63,12 +63,14 @@ bool is_character(const std::string& name) { return name.ends_with(".glb") || na
     throw InputError::in_file(file, body.path + "/" + field + ": " + what);
 }
 
-TriangleMesh load_mesh(const SceneBody& body, const std::string& file)
+TriangleMesh load_mesh(const SceneBody& body, const std::string& file, MeshCache& meshes)
 {
     if (body.surface == "box" || body.surface == "sheet")
         return box(body.surface == "box" ? body.box_m : Vec3(body.box_m[0], body.box_m[1], 0), body.cells);
+    if (const auto known = meshes.find(body.surface); known != meshes.end())
+        return known->second;
     if (auto shape = named_shape(body.surface))
-        return std::move(*shape);
+        return meshes[body.surface] = std::move(*shape);
     if (!is_mesh_file(body.surface)) {
         std::string known;
         for (const std::string& name : shape_names())
@@ -78,7 +80,7 @@ TriangleMesh load_mesh(const SceneBody& body, const std::string& file)
     TriangleMesh mesh = read_mesh(body.surface);
     if (mesh.vertices.empty() || mesh.triangles.empty())
         complain(file, body, "surface", body.surface + " has no triangles");
-    return mesh;
+    return meshes[body.surface] = std::move(mesh);
 }
 
 std::vector<Vec3> lattice(const SceneBody& body)
@@ -95,7 +97,7 @@ std::vector<Vec3> lattice(const SceneBody& body)
 
 } // namespace
 
-LoadedBody load_body(const SceneBody& body, const std::string& file)
+LoadedBody load_body(const SceneBody& body, const std::string& file, MeshCache& meshes)
 {
     LoadedBody loaded;
     TriangleMesh& mesh = loaded.surface.mesh;
@@ -108,7 +110,7 @@ LoadedBody load_body(const SceneBody& body, const std::string& file)
         if (mesh.triangles.empty())
             complain(file, body, "surface", body.surface + " has no skinned triangles");
     } else {
-        mesh = load_mesh(body, file);
+        mesh = load_mesh(body, file, meshes);
         if (body.size_m > 0)
             centre_and_scale(mesh, body.size_m);
     }

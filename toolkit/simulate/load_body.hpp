@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 
 #include "toolkit/simulate/scene.hpp"
@@ -18,8 +19,11 @@ struct LoadedBody {
     std::function<Vec3(std::size_t node, double time_s)> clip; ///< empty where there is none
 };
 
+/// Meshes that several bodies of a scene share, by the name of their surface.
+using MeshCache = std::map<std::string, TriangleMesh>;
+
 /// Throws InputError with file and path.
-LoadedBody load_body(const SceneBody& body, const std::string& file);
+LoadedBody load_body(const SceneBody& body, const std::string& file, MeshCache& meshes);
 
 /// Indices of the nodes, ascending. Throws InputError if there are none, or one that is not there.
 std::vector<std::uint32_t> select_nodes(const NodeSelection& selection, std::span<const Vec3> nodes, const std::string& file, const std::string& path,

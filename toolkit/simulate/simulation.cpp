@@ -147,8 +147,9 @@ bool follows_clip(const Scene& scene, const SceneBody& body)
 
 Simulation::Simulation(Scene scene, const std::string& file) : scene_(std::move(scene))
 {
+    MeshCache meshes;
     for (const SceneBody& spec : scene_.bodies) {
-        LoadedBody loaded = load_body(spec, file);
+        LoadedBody loaded = load_body(spec, file, meshes);
         MeshlessBody body = discretise(loaded.nodes, loaded.volume, spec.meshless);
         if (loaded.volume.empty() && loaded.total_volume > 0) {
             double sum = 0;
