@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 
 #include "experiments/report/number.hpp"
+#include "experiments/report/progress.hpp"
+#include "experiments/simulation/find_scene.hpp"
 #include "toolkit/deform/motion.hpp"
 #include "toolkit/deform/sample_nodes.hpp"
 #include "toolkit/surface/character.hpp"
@@ -136,10 +138,89 @@ bool is_character_file(const std::filesystem::path& path)
     return extension == ".glb" || extension == ".gltf";
 }
 
+// Simulates a scene and keeps `frames` of its frames, the rest pose not among them, and the last one included.
+Inputs load_scene(const InputOptions& options)
+{
+    refuse_options(options, true, false, false);
+    if (!options.motion.empty() || options.support != 0 || !options.weights.empty() || !options.transforms.empty())
+        throw InputError(fmt::format("{} is a scene: --motion, --support, --weights and --transforms do not apply", options.input));
+    SceneChanges changes;
+    changes.nodes = options.nodes;
+    const FoundScene found = find_scene(options.input, changes);
+    Simulation simulation(found.scene, found.file);
+    Inputs inputs{options.input, {}, {}};
+    std::vector<std::size_t> chosen;
+    for (std::size_t b = 0; b < simulation.bodies().size(); ++b)
+        if (options.body.empty() || simulation.bodies()[b].name == options.body)
+            chosen.push_back(b);
+    if (chosen.empty())
+        throw InputError(fmt::format("--body {}: scene '{}' has no body of that name", options.body, options.input));
+    const std::size_t last = simulation.frame_count() - 1, wanted = std::min(options.frames ? options.frames : 4, std::max<std::size_t>(last, 1));
+    for (const std::size_t b : chosen) {
+        Input body;
+        body.name = simulation.bodies().size() == 1 ? options.input : options.input + "/" + simulation.bodies()[b].name;
+        body.simulation_nodes_fixed = found.scene.bodies[b].nodes == 0;
+        body.surface = *simulation.bodies()[b].simulation.surface();
+        body.clip.name = "simulated";
+        inputs.bodies.push_back(std::move(body));
+    }
+    auto record = [&] {
+        for (std::size_t i = 0; i < chosen.size(); ++i) {
+            inputs.bodies[i].clip.time_s.push_back(simulation.time_s());
+            inputs.bodies[i].clip.frames.push_back(simulation.bodies()[chosen[i]].simulation.frame());
+        }
+    };
+    {
+        Progress progress("simulating frames", last);
+        for (std::size_t f = 1; f <= last; ++f) {
+            for (const StepReport& step : simulation.advance())
+                if (!step.failure.empty())
+                    throw std::runtime_error(fmt::format("{} at {:.6g} s: {}", options.input, simulation.time_s(), step.failure));
+            if (f * wanted / last != (f - 1) * wanted / last)
+                record();
+            progress.done(f);
+        }
+    }
+    if (last == 0)
+        record();
+    std::size_t vertices = 0, triangles = 0, nodes = 0, influences = 0;
+    for (const Input& body : inputs.bodies) {
+        vertices += body.surface.mesh.vertices.size();
+        triangles += body.surface.mesh.triangles.size();
+        nodes += body.surface.weights.node_count;
+        influences += body.surface.weights.node.size();
+    }
+    inputs.report = {fmt::format("{}: {}, {}, {}", options.input, counted(inputs.bodies.size(), "body", "bodies"), counted(vertices, "vertex", "vertices"),
+                                 counted(triangles, "triangle", "triangles")),
+                     fmt::format("{}, {:.1f} influences per vertex; simulated, {}", counted(nodes, "simulation node", "simulation nodes"),
+                                 static_cast<double>(influences) / static_cast<double>(vertices), counted(inputs.bodies[0].clip.frames.size(), "frame", "frames"))};
+    return inputs;
+}
+
 } // namespace
+
+Inputs load_inputs(const InputOptions& options)
+{
+    if (is_scene(options.input))
+        return load_scene(options);
+    if (!options.body.empty())
+        throw InputError("--body needs a scene");
+    Input input = load_input(options);
+    Inputs inputs{input.name, input.report, {}};
+    inputs.bodies.push_back(std::move(input));
+    return inputs;
+}
 
 Input load_input(const InputOptions& options)
 {
+    if (is_scene(options.input)) {
+        Inputs inputs = load_scene(options);
+        Input first = std::move(inputs.bodies.front());
+        first.report = inputs.report;
+        if (inputs.bodies.size() > 1)
+            first.report.push_back(fmt::format("only its body {} is looked at; --body chooses another", first.name));
+        return first;
+    }
     Input input;
     input.name = options.input;
     if (auto shape = named_shape(options.input)) {
@@ -160,7 +241,8 @@ Input load_input(const InputOptions& options)
     } else {
         throw InputError::in_file(options.input, std::filesystem::exists(options.input)
                                                      ? "unknown format; known are .obj, .off, .ply, .stl, .glb and .gltf"
-                                                     : fmt::format("no such file, and no shape of that name ({})", fmt::join(shape_names(), ", ")));
+                                                     : fmt::format("no such file, and no shape ({}) or scene ({}) of that name", fmt::join(shape_names(), ", "),
+                                                                   fmt::join(shipped_scenes(), ", ")));
     }
     if (input.surface.mesh.triangles.empty())
         throw InputError::in_file(options.input, "has no skinned triangles; there is nothing to bound");

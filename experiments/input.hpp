@@ -21,6 +21,7 @@ struct InputOptions {
     double fps = 0;
     std::size_t frames = 0;
     std::uint64_t seed = 0;
+    std::string body; ///< of a scene; empty: all of them, or the first where one is asked for
 };
 
 /// A surface with the frames that deform it.
@@ -32,8 +33,16 @@ struct Input {
     std::vector<std::string> report; ///< one line each: what was loaded, and what was changed or left out
 };
 
-/// Loads a shipped shape, a mesh (with scripted motion, or with weights and transforms), or a skinned character.
-/// Throws InputError, one line, for anything that cannot be used, options that do not apply included.
+/// Loads a shipped shape, a mesh (with scripted motion, or with weights and transforms), a skinned character, or a scene, which is
+/// simulated. Throws InputError, one line, for anything that cannot be used, options that do not apply included.
 Input load_input(const InputOptions& options);
+
+/// The same with every body of a scene as an input of its own.
+struct Inputs {
+    std::string name;
+    std::vector<std::string> report;
+    std::vector<Input> bodies; ///< at least one
+};
+Inputs load_inputs(const InputOptions& options);
 
 } // namespace cinch

@@ -126,7 +126,8 @@ void add_simulate(CLI::App& app, SimulateOptions& o)
 void add_input(CLI::App& command, InputOptions& o)
 {
     command.add_option("INPUT", o.input,
-                       wrapped(fmt::format("a shape ({}), a mesh (.obj, .off, .ply, .stl) or a skinned character (.glb, .gltf)", fmt::join(shape_names(), ", "))))
+                       wrapped(fmt::format("a shape ({}), a scene ({}, or a .json file), a mesh (.obj, .off, .ply, .stl) or a skinned character (.glb, .gltf)",
+                                           fmt::join(shape_names(), ", "), fmt::join(shipped_scenes(), ", "))))
         ->option_text("[brain]");
     auto option = [&](const char* name, auto& value, const std::string& description) { return command.add_option(name, value, wrapped(description)); };
     option("--nodes", o.nodes, "simulation nodes sampled in the volume [the paper's number for a shape, 100 for a mesh]")
@@ -135,6 +136,7 @@ void add_input(CLI::App& command, InputOptions& o)
     option("--motion", o.motion, fmt::format("scripted motion: {} [strong]", motion_names))->option_text("NAME");
     option("--weights", o.weights, "weights of a mesh's vertices as text, see below")->option_text("FILE");
     option("--transforms", o.transforms, "transforms of the simulation nodes as text, see below")->option_text("FILE");
+    option("--body", o.body, "which body of a scene [all for verify, else the first]")->option_text("NAME");
     option("--clip", o.clip, "which clip of a character or of --transforms [the first]")->option_text("NAME");
     option("--fps", o.fps, "frames per second sampled from a character's clip [30]")->check(CLI::Range(1e-3, 1e6))->option_text("X");
     option("--frames", o.frames, "how many frames, evenly spread, the last one included [4 if scripted, else all]")

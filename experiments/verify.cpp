@@ -100,11 +100,11 @@ void add(const Bvh& bvh, const exact::FrameVerdict& frame, int kdop, VerifyTotal
 }
 
 // In the last frame verified: the exact attribution of the root's bounds, and VIPR files of the first BV of every level.
-void explain_last_frame(const Input& input, const Bvh& bvh, const VerifyOptions& options, std::span<const double> supports, VerifyTotals& totals)
+void explain_last_frame(const Input& input, const Bvh& bvh, const VerifyOptions& options, std::size_t frame, std::span<const double> supports, VerifyTotals& totals)
 {
     if (totals.levels.empty() || options.sabotage != Sabotage::none || options.rest_shape == RestShape::obb)
         return; // damaged data need not have a proof
-    const auto& maps = input.clip.frames[totals.frames - 1];
+    const auto& maps = input.clip.frames[frame];
     auto place = [&](std::size_t bv, int direction) {
         return exact::OneBound{input.surface, bvh, maps, options.methods, options.kdop, bv, direction,
                                supports[bv * static_cast<std::size_t>(options.kdop) + static_cast<std::size_t>(direction)]};
@@ -126,6 +126,54 @@ void explain_last_frame(const Input& input, const Bvh& bvh, const VerifyOptions&
             }
 }
 
+// Refits and proves every BV of one body in every frame, on top of what `totals` has.
+void verify_body(const Input& input, const VerifyOptions& options, LineFile* certificate, VerifyTotals& totals)
+{
+    Bvh bvh = build_bvh(input.surface, options.leaf);
+    damage(bvh, options.sabotage);
+    const Rounding rounding = options.sabotage == Sabotage::no_rounding ? Rounding::plain : Rounding::proven;
+    const exact::Verifier verifier(input.surface, bvh);
+    const RefitOptions refit_options{options.methods, options.kdop, rounding, options.precision, options.passes, options.rest_shape, options.remember};
+    Refitter refit(bvh, input.surface, refit_options);
+    Ladder ladder(bvh, input.surface, refit_options);
+    totals.packed_bytes += refit.bytes();
+    totals.rest_bytes += bvh.bytes();
+
+    const std::size_t levels = bvh.level.size() - 1;
+    if (totals.levels.size() < levels)
+        totals.levels.resize(levels);
+    for (std::size_t i = 0; i < levels; ++i) {
+        totals.levels[i].bvs += bvh.level[i + 1] - bvh.level[i];
+        for (std::size_t bv = bvh.level[i]; bv < bvh.level[i + 1]; ++bv)
+            totals.levels[i].nodes += bvh.bvs[bv].influence_count;
+    }
+    if (options.volume && totals.volumes.size() < levels)
+        totals.volumes.resize(levels);
+    const exact::LineSink write = [&](std::string_view text) { certificate->line(text); };
+    if (certificate)
+        exact::certify_rest(input.surface, bvh, options.methods, options.kdop, input.clip.frames.size(), write, options.rest_shape);
+
+    const std::size_t before = totals.frames;
+    Progress progress("verifying frames", totals.frames_wanted);
+    std::vector<double> supports(bvh.bvs.size() * static_cast<std::size_t>(options.kdop));
+    for (const auto& maps : input.clip.frames) {
+        if (interrupted())
+            break;
+        totals.unbounded_nodes += refit(maps, supports).unbounded_nodes;
+        const exact::FrameVerdict verdict = verifier.check(maps, options.methods, options.kdop, supports, options.rest_shape);
+        if (certificate)
+            exact::certify_frame(totals.frames, maps, options.methods, options.kdop, supports, verdict, write, options.rest_shape);
+        add(bvh, verdict, options.kdop, totals);
+        totals.infinite += static_cast<std::size_t>(std::count_if(supports.begin(), supports.end(), [](double s) { return std::isinf(s); }));
+        if (options.volume)
+            add_volumes(input.surface, bvh, maps, options.kdop, supports, totals.volumes);
+        ladder.check(maps, totals.ladder);
+        progress.done(totals.frames);
+    }
+    if (totals.frames > before)
+        explain_last_frame(input, bvh, options, totals.frames - before - 1, supports, totals);
+}
+
 } // namespace
 
 int verify(const VerifyOptions& options)
@@ -135,56 +183,19 @@ int verify(const VerifyOptions& options)
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
     if (!options.vipr.empty() && (!options.methods.within(box_methods) || options.rest_shape == RestShape::obb))
         throw InputError("--vipr needs methods that bound over weights and the BV's own box: convex, corners, eq12, limited");
-    const Input input = load_input(options.input);
-    Bvh bvh = build_bvh(input.surface, options.leaf);
-    damage(bvh, options.sabotage);
-    const Rounding rounding = options.sabotage == Sabotage::no_rounding ? Rounding::plain : Rounding::proven;
-    const exact::Verifier verifier(input.surface, bvh);
-    const RefitOptions refit_options{options.methods, options.kdop, rounding, options.precision, options.passes, options.rest_shape, options.remember};
-    Refitter refit(bvh, input.surface, refit_options);
-    Ladder ladder(bvh, input.surface, refit_options);
-    const std::size_t packed_bytes = refit.bytes(), rest_bytes = bvh.bytes();
-
+    const Inputs inputs = load_inputs(options.input);
+    if (inputs.bodies.size() > 1 && (!options.certificate.empty() || !options.vipr.empty()))
+        throw InputError("--certificate and --vipr are of one body; --body chooses it");
     VerifyTotals totals;
-    totals.packed_bytes = packed_bytes;
-    totals.rest_bytes = rest_bytes;
-    totals.frames_wanted = input.clip.frames.size();
-    for (std::size_t i = 0; i + 1 < bvh.level.size(); ++i) {
-        LevelTotals level;
-        level.bvs = bvh.level[i + 1] - bvh.level[i];
-        for (std::size_t bv = bvh.level[i]; bv < bvh.level[i + 1]; ++bv)
-            level.nodes += bvh.bvs[bv].influence_count;
-        totals.levels.push_back(level);
-    }
+    for (const Input& input : inputs.bodies)
+        totals.frames_wanted += input.clip.frames.size();
     std::optional<LineFile> certificate;
-    const exact::LineSink write = [&](std::string_view text) { certificate->line(text); };
-    if (!options.certificate.empty()) {
+    if (!options.certificate.empty())
         certificate.emplace(options.certificate);
-        exact::certify_rest(input.surface, bvh, options.methods, options.kdop, totals.frames_wanted, write, options.rest_shape);
-    }
-    if (options.volume)
-        totals.volumes.resize(totals.levels.size());
     catch_interrupt();
-    {
-        Progress progress("verifying frames", totals.frames_wanted);
-        std::vector<double> supports(bvh.bvs.size() * static_cast<std::size_t>(options.kdop));
-        for (const auto& maps : input.clip.frames) {
-            if (interrupted())
-                break;
-            totals.unbounded_nodes += refit(maps, supports).unbounded_nodes;
-            const exact::FrameVerdict verdict = verifier.check(maps, options.methods, options.kdop, supports, options.rest_shape);
-            if (certificate)
-                exact::certify_frame(totals.frames, maps, options.methods, options.kdop, supports, verdict, write, options.rest_shape);
-            add(bvh, verdict, options.kdop, totals);
-            totals.infinite += static_cast<std::size_t>(std::count_if(supports.begin(), supports.end(), [](double s) { return std::isinf(s); }));
-            if (options.volume)
-                add_volumes(input.surface, bvh, maps, options.kdop, supports, totals.volumes);
-            ladder.check(maps, totals.ladder);
-            progress.done(totals.frames);
-        }
-        if (totals.frames > 0)
-            explain_last_frame(input, bvh, options, supports, totals);
-    }
+    for (const Input& input : inputs.bodies)
+        if (!interrupted())
+            verify_body(input, options, certificate ? &*certificate : nullptr, totals);
     if (certificate)
         certificate->close();
     for (const LevelTotals& level : totals.levels) {
@@ -195,7 +206,7 @@ int verify(const VerifyOptions& options)
     totals.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
     const Provenance from = provenance(threads, options.input.seed);
-    (options.json ? print_json : print_table)(input, options, totals, from);
+    (options.json ? print_json : print_table)(inputs, options, totals, from);
     if (totals.violated || totals.ladder.broken)
         return 1;
     if (totals.frames < totals.frames_wanted) {

@@ -35,7 +35,7 @@ std::string direction_name(int kdop, int direction)
 
 } // namespace
 
-void print_table(const Input& input, const VerifyOptions& options, const VerifyTotals& totals, const Provenance& from)
+void print_table(const Inputs& input, const VerifyOptions& options, const VerifyTotals& totals, const Provenance& from)
 {
     for (const std::string& line : input.report)
         fmt::print("{}\n", line);
@@ -91,7 +91,7 @@ void print_table(const Input& input, const VerifyOptions& options, const VerifyT
     fmt::print("{}, filter hit rate {:.4f}\n{}\n", duration(totals.seconds), rate(totals.decided_by_filter, totals.bounds), describe(from));
 }
 
-void print_json(const Input& input, const VerifyOptions& options, const VerifyTotals& totals, const Provenance& from)
+void print_json(const Inputs& input, const VerifyOptions& options, const VerifyTotals& totals, const Provenance& from)
 {
     using nlohmann::json;
     auto base = [&] {
@@ -129,8 +129,14 @@ void print_json(const Input& input, const VerifyOptions& options, const VerifyTo
         print(record);
     }
     json record = base();
-    record.update({{"frames", totals.frames}, {"leaf_triangles", options.leaf}, {"vertices", input.surface.mesh.vertices.size()},
-                   {"triangles", input.surface.mesh.triangles.size()}, {"nodes", input.surface.weights.node_count}, {"motion", input.clip.name},
+    std::size_t vertices = 0, triangles = 0, nodes = 0;
+    for (const Input& body : input.bodies) {
+        vertices += body.surface.mesh.vertices.size();
+        triangles += body.surface.mesh.triangles.size();
+        nodes += body.surface.weights.node_count;
+    }
+    record.update({{"frames", totals.frames}, {"leaf_triangles", options.leaf}, {"vertices", vertices},
+                   {"triangles", triangles}, {"nodes", nodes}, {"bodies", input.bodies.size()}, {"motion", input.bodies[0].clip.name},
                    {"bounds", totals.bounds}, {"proven", totals.proven}, {"violated", totals.violated}, {"infinite", totals.infinite},
                    {"ladder_compared", totals.ladder.compared}, {"ladder_broken", totals.ladder.broken},
                    {"filter_hit_rate", rate(totals.decided_by_filter, totals.bounds)}, {"seconds", totals.seconds},

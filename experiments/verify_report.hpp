@@ -51,7 +51,7 @@ struct VerifyTotals {
     std::vector<Example> examples; ///< the first violations
 };
 
-void print_table(const Input& input, const VerifyOptions& options, const VerifyTotals& totals, const Provenance& from);
-void print_json(const Input& input, const VerifyOptions& options, const VerifyTotals& totals, const Provenance& from);
+void print_table(const Inputs& input, const VerifyOptions& options, const VerifyTotals& totals, const Provenance& from);
+void print_json(const Inputs& input, const VerifyOptions& options, const VerifyTotals& totals, const Provenance& from);
 
 } // namespace cinch
