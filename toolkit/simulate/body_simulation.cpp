@@ -251,6 +251,17 @@ Field BodySimulation::forces(std::optional<std::size_t> only)
     return force;
 }
 
+Field BodySimulation::stiffness(const Field& dx)
+{
+    const Configuration c = configure(x_, time_s_);
+    Field force(x_.size(), 0), product(x_.size(), 0);
+    add_forces(c, force);
+    assemble(c, Parts::all);
+    add_product(c, dx, product);
+    whole(product) *= -1;
+    return product;
+}
+
 void BodySimulation::save(std::ostream& out) const
 {
     write_raw<double>(out, {&time_s_, 1});

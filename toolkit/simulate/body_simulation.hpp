@@ -75,6 +75,9 @@ public:
     /// The forces on the nodes at present, N; of the effect of that index alone, if one is given.
     Field forces(std::optional<std::size_t> only = {});
 
+    /// ∂²U/∂X² · dx at present, N.
+    Field stiffness(const Field& dx);
+
     void save(std::ostream& out) const;
     void restore(std::istream& in);
 
