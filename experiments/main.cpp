@@ -3,7 +3,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
-#include <sstream>
 #include <system_error>
 
 #include <CLI/CLI.hpp>
@@ -13,6 +12,7 @@
 #include "experiments/cost/cost.hpp"
 #include "experiments/fuzz/fuzz.hpp"
 #include "experiments/report/provenance.hpp"
+#include "experiments/report/table.hpp"
 #include "experiments/scaling.hpp"
 #include "experiments/simulation/simulate.hpp"
 #include "experiments/tightness.hpp"
@@ -29,20 +29,7 @@ using namespace cinch;
 constexpr int bad_input = 2;
 
 // Descriptions begin in column 31 and CLI11 does not break lines; this does, for terminals 80 wide.
-std::string wrapped(const std::string& text)
-{
-    std::string out, word;
-    std::size_t column = 0;
-    for (std::istringstream words(text); words >> word;) {
-        if (column > 0 && column + 1 + word.size() > 49) {
-            out += '\n'; // the next line is indented by CLI11
-            column = 0;
-        }
-        out += (column ? " " : "") + word;
-        column += (column ? 1 : 0) + word.size();
-    }
-    return out;
-}
+std::string wrapped(const std::string& text) { return folded(text, 49); }
 
 // Accepts one of the names and nothing else, and says which there are.
 template <class Enum> CLI::Validator one_of(std::vector<std::pair<std::string, Enum>> names)

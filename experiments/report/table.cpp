@@ -2,6 +2,7 @@
 #include "experiments/report/table.hpp"
 
 #include <algorithm>
+#include <sstream>
 
 namespace cinch {
 
@@ -22,6 +23,19 @@ std::string table(const std::vector<std::string>& header, const std::vector<std:
     add(header);
     for (const auto& row : rows)
         add(row);
+    return out;
+}
+
+std::string folded(const std::string& text, std::size_t width)
+{
+    std::string out, word;
+    std::size_t column = 0;
+    for (std::istringstream words(text); words >> word;) {
+        const bool fits = column == 0 || column + 1 + word.size() <= width;
+        out += column == 0 ? "" : fits ? " " : "\n";
+        column = column == 0 || !fits ? word.size() : column + 1 + word.size();
+        out += word;
+    }
     return out;
 }
 

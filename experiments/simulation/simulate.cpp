@@ -162,7 +162,7 @@ void print_tables(const SimulateOptions& options, const Simulation& simulation, 
         nodes += body.simulation.body().size();
         neighbours += body.simulation.body().neighbour.size();
     }
-    fmt::print("{}: {}\n", options.scene, simulation.scene().about);
+    fmt::print("{}\n", folded(options.scene + ": " + simulation.scene().about));
     fmt::print("{}, {}, {}, {:.1f} neighbours each\n", counted(simulation.bodies().size(), "body", "bodies"), counted(vertices, "vertex", "vertices"),
                counted(nodes, "simulation node", "simulation nodes"), static_cast<double>(neighbours) / static_cast<double>(nodes));
     std::map<std::string, std::size_t> notes;
@@ -170,7 +170,7 @@ void print_tables(const SimulateOptions& options, const Simulation& simulation, 
         for (const std::string& note : body.notes)
             ++notes[note];
     for (const auto& [note, count] : notes)
-        fmt::print("note: {}{}\n", note, count > 1 ? fmt::format(" (each of {} bodies)", count) : "");
+        fmt::print("{}\n", folded(fmt::format("note: {}{}", note, count > 1 ? fmt::format(" (each of {} bodies)", count) : "")));
     fmt::print("\n{} to {:.3f} s, {} Euler, {} ({:.3f} ms each)\n\n", counted(result.frames, "frame", "frames"), simulation.time_s(),
                is_explicit ? "symplectic" : "implicit", counted(result.steps, "step", "steps"), ms_per_step(result.seconds, result));
 
@@ -214,18 +214,18 @@ void print_tables(const SimulateOptions& options, const Simulation& simulation, 
         fmt::print("Newton, CG: iterations and Hessian products per step. mended: iterations whose\n"
                    "Hessian had to be made semidefinite. residual: largest left, m/s2.\n");
     if (options.explain) {
-        fmt::print("\nLeft out of this scene, and so never constructed:");
+        std::string absent = "Left out of this scene, and so never constructed:";
         for (const std::string& name : effect_names()) {
             const bool pin = name == "pinned" || name == "scripted";
-            const bool absent = pin ? bodies_pinned(simulation, name == "scripted") == 0 : Effect::constructed(name) == 0;
-            if (absent)
-                fmt::print(" {}", name);
+            if (pin ? bodies_pinned(simulation, name == "scripted") == 0 : Effect::constructed(name) == 0)
+                absent += " " + name;
         }
+        fmt::print("\n{}\n", folded(absent));
         bool needs = false;
         for (const Simulation::Body& body : simulation.bodies())
             for (const BodySimulation::Slot& slot : body.simulation.effects())
                 needs |= slot.effect->needs_deformation();
-        fmt::print("\nJ is computed {}.\n", needs ? "in every evaluation: an effect needs it" : "only for frames: no effect needs it");
+        fmt::print("J is computed {}.\n", needs ? "in every evaluation: an effect needs it" : "only for frames: no effect needs it");
         for (const auto& [name, totals] : effect_totals(simulation))
             fmt::print("{}: {} constructed, {} calls\n", name, Effect::constructed(name), grouped(totals.calls));
     }

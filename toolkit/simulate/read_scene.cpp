@@ -308,6 +308,7 @@ Scene parse_scene(std::string_view text, const std::string& file, const std::str
         effect.path = "/effects/" + std::to_string(i);
         JsonFields e(effects[i], file, effect.path);
         const std::string name = e.text("effect");
+        const Json* chosen = e.find("bodies");
         const Kind* kind = nullptr;
         for (const Kind& k : kinds)
             if (name == k.name)
@@ -319,16 +320,15 @@ Scene parse_scene(std::string_view text, const std::string& file, const std::str
             e.complain("effect", "'" + name + "' is unknown; known are " + known);
         }
         effect.what = kind->read(e);
-        if (e.has("bodies")) {
-            const Json& chosen = e.array("bodies");
-            for (std::size_t b = 0; b < chosen.size(); ++b) {
-                const std::string place = "bodies/" + std::to_string(b);
-                if (!chosen[b].is_string())
-                    e.fail(place, "the name of a body", chosen[b]);
-                if (!names.count(chosen[b].get<std::string>()))
-                    e.complain(place, "there is no body '" + chosen[b].get<std::string>() + "'");
-                effect.bodies.push_back(chosen[b].get<std::string>());
-            }
+        if (chosen && !chosen->is_array())
+            e.fail("bodies", "an array of names", *chosen);
+        for (std::size_t b = 0; chosen && b < chosen->size(); ++b) {
+            const std::string place = "bodies/" + std::to_string(b);
+            if (!(*chosen)[b].is_string())
+                e.fail(place, "the name of a body", (*chosen)[b]);
+            effect.bodies.push_back((*chosen)[b].get<std::string>());
+            if (!names.count(effect.bodies.back()))
+                e.complain(place, "there is no body '" + effect.bodies.back() + "'");
         }
         e.finish();
         scene.effects.push_back(std::move(effect));

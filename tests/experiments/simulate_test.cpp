@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The command simulate, as its user sees it.
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <nlohmann/json.hpp>
+
+#include "experiments/simulation/find_scene.hpp"
+#include "tests/support.hpp"
+#include "toolkit/simulate/frame_file.hpp"
+#include "toolkit/surface/read_mesh.hpp"
+
+using namespace cinch;
+using test::TemporaryFolder;
+using json = nlohmann::json;
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string bytes_of(const fs::path& path)
+{
+    std::ifstream in(path, std::ios::binary);
+    std::ostringstream out;
+    out << in.rdbuf();
+    return out.str();
+}
+
+} // namespace
+
+TEST_CASE("every shipped scene starts, and writes finite frames")
+{
+    TemporaryFolder folder;
+    const auto scenes = shipped_scenes();
+    REQUIRE(scenes.size() >= 16);
+    for (const std::string& scene : scenes) {
+        INFO(scene);
+        const auto run = test::cinch("simulate " + scene + " --duration 0.05 --json --frames " + (folder.path() / scene).string());
+        REQUIRE(run.status == 0);
+        CHECK(run.err.empty());
+        const json first = json::parse(run.lines().front());
+        CHECK(first["scene"] == scene);
+        CHECK(first["steps"].get<std::size_t>() > 0);
+        std::size_t named = 0;
+        for (const json& effect : first["effects"])
+            named += effect != "pinned" && effect != "scripted";
+        CHECK(run.lines().size() == 2 + named); // one record for each effect, and the shared work
+        const FrameFile frames = read_frames(folder.path() / scene);
+        CHECK(frames.bodies.size() == first["bodies"]);
+        CHECK(frames.bodies[0].frames.size() == 4);
+        for (const Clip& body : frames.bodies)
+            for (const auto& frame : body.frames)
+                for (const AffineMap& map : frame)
+                    for (const auto& row : map.m)
+                        for (const double value : row)
+                            REQUIRE(std::isfinite(value));
+    }
+}
+
+TEST_CASE("a run that is interrupted, or killed, and resumed writes the bytes of an uninterrupted one")
+{
+    TemporaryFolder folder;
+    auto in = [&](const std::string& name) { return (folder.path() / name).string(); };
+    for (const std::string kind : {"frames", "jsonl"}) {
+        const std::string whole = in("whole." + kind), part = in("part." + kind), state = in("state-" + kind);
+        const std::string scene = "simulate twist-180 --duration 3 --every 3 --threads 1";
+        REQUIRE(test::cinch(scene + " --frames " + whole + " --meshes " + in("meshes-" + kind)).status == 0);
+        const std::string begin = scene + " --frames " + part + " --checkpoint " + state + " --meshes " + in("parts-" + kind);
+        const std::string resume = scene + " --frames " + part + " --resume " + state + " --meshes " + in("parts-" + kind);
+        test::cinch_killed(begin, 0.4);
+        for (const double after : {0.25, 0.35, 0.3})
+            if (fs::exists(state))
+                test::cinch_killed(resume, after);
+        const auto last = test::cinch(fs::exists(state) ? resume : begin);
+        REQUIRE(last.status == 0);
+        CHECK(bytes_of(part) == bytes_of(whole));
+        std::size_t meshes = 0;
+        for (const auto& entry : fs::directory_iterator(in("meshes-" + kind))) {
+            ++meshes;
+            CHECK(bytes_of(entry.path()) == bytes_of(in("parts-" + kind) / entry.path().filename()));
+        }
+        CHECK(meshes == 181);
+    }
+    const auto stopped = test::cinch_interrupted("simulate santa-ring-8 --duration 60 --frames " + in("long") + " --checkpoint " + in("long-state"), 3);
+    CHECK(stopped.status == 130);
+    CHECK(stopped.err.find("interrupted at frame") != std::string::npos);
+    CHECK(stopped.out.find("elastic") != std::string::npos); // what is done is shown
+    const FrameFile kept = read_frames(in("long"));
+    CHECK_FALSE(kept.cut_off);
+    CHECK(kept.bodies[0].frames.size() > 1);
+}
+
+TEST_CASE("checkpoints continue only what they are of")
+{
+    TemporaryFolder folder;
+    const std::string state = (folder.path() / "s").string(), frames = (folder.path() / "f").string();
+    REQUIRE(test::cinch("simulate skin --duration 0.2 --checkpoint " + state + " --frames " + frames).status == 0);
+    CHECK(test::cinch("simulate skin --duration 0.3 --resume " + state + " --frames " + frames).status == 0); // longer is fine
+    CHECK(read_frames(frames).bodies[0].frames.size() == 19);
+    auto refused = [&](const std::string& arguments, const std::string& why) {
+        const auto run = test::cinch("simulate " + arguments);
+        INFO(run.err);
+        CHECK(run.status == 2);
+        CHECK(run.err.find(why) != std::string::npos);
+        CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
+    };
+    refused("beam --resume " + state, "is of another scene");
+    refused("skin --step 0.001 --resume " + state, "or of other settings");
+    refused("skin --resume " + frames, "is no checkpoint");
+    refused("skin --resume " + state + "x", "no such file");
+    std::string bytes = bytes_of(state);
+    bytes[bytes.size() / 2] ^= 4;
+    refused("skin --resume " + folder.write("d", bytes).string(), "was changed");
+    refused("skin --resume " + state + " --frames " + folder.write("short", "abc").string(), "does not have the");
+    refused("skin --frames /nonexistent/f", "cannot be written");
+    refused("skin --meshes " + state, "is no folder");
+    refused("nothing", "no such scene; known are beam, brain-pull");
+    refused("nothing.json", "no such file");
+    refused("brain-pull --nodes 0", "--nodes");
+    refused("beam --nodes 5", "gives them");
+    refused(folder.write("scene.json", R"({"duration": 1, "bodies": [{"surface": "box"}], "effects": []})").string(), "scene.json: /bodies/0/box: is missing");
+}
+
+TEST_CASE("a step that cannot be solved is reported with time and body, and no file has NaN")
+{
+    TemporaryFolder folder;
+    const fs::path scene = folder.write("hard.json", R"({"duration": 1, "integrator": {"method": "implicit", "iterations": 1, "tolerance": 1e-12},
+        "bodies": [{"name": "bar", "surface": "box", "box": [1, 0.3, 0.3], "cells": [8, 2, 2], "lattice": [6, 2, 2], "spin": [0, 9, 0]}],
+        "effects": [{"effect": "elastic", "young": 1e7}]})");
+    const auto run = test::cinch("simulate " + scene.string() + " --frames " + (folder.path() / "f").string());
+    CHECK(run.status == 1);
+    CHECK(run.err.find("body 'bar' at 0 s: no minimum within 1 Newton iterations") != std::string::npos);
+    CHECK(read_frames(folder.path() / "f").bodies[0].frames.size() == 1);
+}
+
+TEST_CASE("meshes are those of the frames")
+{
+    TemporaryFolder folder;
+    for (const std::string format : {"ply", "obj"}) {
+        REQUIRE(test::cinch("simulate beam --duration 0.1 --mesh-format " + format + " --meshes " + folder.path().string()).status == 0);
+        const TriangleMesh mesh = read_mesh(folder.path() / ("beam-00006." + format));
+        CHECK(mesh.vertices.size() == 1610);
+        double lowest = 0;
+        for (const Vec3& v : mesh.vertices)
+            lowest = std::min(lowest, v.z());
+        CHECK(lowest < -0.055); // it has begun to fall
+    }
+}
+
+TEST_CASE("what is not named is said to be left out")
+{
+    const auto run = test::cinch("simulate beam --duration 0.1 --explain");
+    REQUIRE(run.status == 0);
+    std::string text = run.out;
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    CHECK(text.find("never constructed: pulling volume plasticity damping ground scripted") != std::string::npos);
+    for (const std::string& line : run.lines())
+        CHECK(line.size() <= 80);
+}
