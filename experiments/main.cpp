@@ -15,6 +15,7 @@
 #include "experiments/report/table.hpp"
 #include "experiments/scaling.hpp"
 #include "experiments/simulation/simulate.hpp"
+#include "experiments/stability/stability.hpp"
 #include "experiments/tightness.hpp"
 #include "experiments/verify.hpp"
 #include "toolkit/bounds/kernel/bound_kernel.hpp"
@@ -251,6 +252,23 @@ void add_corners(CLI::App& app, CornersOptions& o)
                    "usage or input (other files are still answered), 130 interrupted.");
 }
 
+void add_stability(CLI::App& app, StabilityOptions& o)
+{
+    CLI::App& command = *app.add_subcommand("stability", "hard cases: expected, observed, and their bounds");
+    command.add_option("--case", o.cases, wrapped("only cases with one of these in their name [all]"))->delimiter(',')->option_text("TEXT,...");
+    command.add_flag("--list", o.list, "names of the cases, and what is expected");
+    command.add_option("--without", o.missing, wrapped("take a safeguard away, to see which cases need it: hourglass, completion or projection"))
+        ->transform(one_of<Missing>({{"hourglass", Missing::hourglass}, {"completion", Missing::completion}, {"projection", Missing::projection}}))
+        ->option_text("NAME");
+    command.add_flag("--json", o.json, "JSON Lines on standard output and nothing else");
+    command.footer("Examples:\n"
+                   "  cinch stability                       all cases, about ten seconds\n"
+                   "  cinch stability --case inverted,flat\n"
+                   "  cinch stability --without completion  what the safeguard is for\n"
+                   "\n"
+                   "Exit status: 0 all pass, 1 a case fails, 2 bad usage, 130 interrupted.");
+}
+
 void add_fuzz(CLI::App& app, FuzzOptions& o)
 {
     CLI::App& command = *app.add_subcommand("fuzz", "every method against the exact side, random cases");
@@ -312,6 +330,8 @@ int main(int argc, char** argv)
     add_tightness(app, tightness_options);
     add_corners(app, corners_options);
     add_fuzz(app, fuzz_options);
+    StabilityOptions stability_options;
+    add_stability(app, stability_options);
 #endif
     add_scaling(app, scaling_options);
     SimulateOptions simulate_options;
@@ -324,6 +344,8 @@ int main(int argc, char** argv)
             return cost(cost_options);
         if (parsed.got_subcommand("tightness"))
             return tightness(tightness_options);
+        if (parsed.got_subcommand("stability"))
+            return stability(stability_options);
         if (parsed.got_subcommand("corners"))
             return corners(corners_options);
         if (parsed.got_subcommand("fuzz")) {

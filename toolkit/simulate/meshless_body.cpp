@@ -157,8 +157,11 @@ MeshlessBody discretise(std::span<const Vec3> nodes, std::span<const double> vol
     }
     body.spacing = n > 1 ? *std::min_element(mean_distance.begin(), mean_distance.end()) : 0;
     body.volume = volume.empty() ? density_volumes(body, mean_distance) : std::vector<double>(volume.begin(), volume.end());
-    for (const double v : body.volume)
+    for (const double v : body.volume) {
+        if (!positive(v) || !positive(options.density * v))
+            throw std::invalid_argument("discretise: a node's volume or mass is no positive double");
         body.mass.push_back(options.density * v);
+    }
     if (coincident)
         body.notes.push_back(std::to_string(coincident) + " simulation nodes coincide with others");
     if (!body.deficient.empty())

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <sstream>
+#include <stdexcept>
 
 #include <Eigen/Geometry>
 
@@ -150,7 +151,13 @@ Simulation::Simulation(Scene scene, const std::string& file) : scene_(std::move(
     MeshCache meshes;
     for (const SceneBody& spec : scene_.bodies) {
         LoadedBody loaded = load_body(spec, file, meshes);
-        MeshlessBody body = discretise(loaded.nodes, loaded.volume, spec.meshless);
+        MeshlessBody body = [&] {
+            try {
+                return discretise(loaded.nodes, loaded.volume, spec.meshless);
+            } catch (const std::invalid_argument& error) { // sizes that leave the range of doubles
+                throw InputError::in_file(file, spec.path + ": " + error.what());
+            }
+        }();
         if (loaded.volume.empty() && loaded.total_volume > 0) {
             double sum = 0;
             for (const double v : body.volume)
