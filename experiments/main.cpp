@@ -14,6 +14,7 @@
 #include "experiments/report/provenance.hpp"
 #include "experiments/report/table.hpp"
 #include "experiments/scaling.hpp"
+#include "experiments/simulation/cost_simulation.hpp"
 #include "experiments/simulation/simulate.hpp"
 #include "experiments/stability/stability.hpp"
 #include "experiments/tightness.hpp"
@@ -213,19 +214,22 @@ void add_tightness(CLI::App& app, TightnessOptions& o)
                    "(results so far are printed).");
 }
 
-void add_cost(CLI::App& app, CostOptions& o)
+void add_cost(CLI::App& app, CostOptions& o, std::string& simulation, double& duration)
 {
     CLI::App& command = *app.add_subcommand("cost", "what accuracy costs in time");
     add_input(command, o.input);
     command.add_option("--kdops", o.kdops, wrapped("directions of the bounds [6,14,18,26]"))->delimiter(',')->check(CLI::IsMember({6, 14, 18, 26}))->option_text("K,...");
     command.add_option("--seconds", o.seconds, wrapped("of measuring per k [2]"))->check(CLI::Range(0.001, 1e6))->option_text("X");
     command.add_option("--leaf", o.leaf, wrapped("most triangles per leaf [16]"))->check(CLI::Range(1, 1000000))->option_text("N");
+    command.add_option("--simulation", simulation, wrapped("of this scene instead: step size, integrator and energy against error and time"))->option_text("SCENE");
+    command.add_option("--duration", duration, wrapped("of the scene to simulate, at most [0.25]"))->check(CLI::Range(0.001, 1e4))->option_text("S");
     command.add_flag("!--this-input-only", o.all_scenes, wrapped("the gap of the dual evaluation for the input alone, not for every shipped shape"));
     add_output(command, o.output);
     command.footer("Examples:\n"
                    "  cinch cost                             the brain; about a minute\n"
                    "  cinch cost santa --kdops 6 --plot cost.svg\n"
                    "  cinch cost robot.glb --this-input-only --json > cost.jsonl\n"
+                   "  cinch cost --simulation twist-180      what accuracy costs in simulation\n"
                    "\n"
                    "Exit status: 0 measured, 2 bad usage or input, 130 interrupted (results so far\n"
                    "are printed).");
@@ -325,7 +329,8 @@ int main(int argc, char** argv)
     add_verify(app, verify_options);
     FuzzOptions fuzz_options;
     CostOptions cost_options;
-    add_cost(app, cost_options);
+    CostSimulationOptions cost_simulation_options;
+    add_cost(app, cost_options, cost_simulation_options.scene, cost_simulation_options.duration_s);
     TightnessOptions tightness_options;
     add_tightness(app, tightness_options);
     add_corners(app, corners_options);
@@ -340,8 +345,13 @@ int main(int argc, char** argv)
 #ifdef CINCH_EXACT
         if (parsed.got_subcommand("verify"))
             return verify(verify_options);
-        if (parsed.got_subcommand("cost"))
+        if (parsed.got_subcommand("cost") && cost_simulation_options.scene.empty())
             return cost(cost_options);
+        if (parsed.got_subcommand("cost")) {
+            cost_simulation_options.output = cost_options.output;
+            cost_simulation_options.seconds = cost_options.seconds;
+            return cost_simulation(cost_simulation_options);
+        }
         if (parsed.got_subcommand("tightness"))
             return tightness(tightness_options);
         if (parsed.got_subcommand("stability"))

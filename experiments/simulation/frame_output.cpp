@@ -35,7 +35,7 @@ void write_ply(std::ostream& out, const std::vector<Vec3>& vertices, const std::
 void write_obj(std::ostream& out, const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles)
 {
     for (const Vec3& v : vertices)
-        out << fmt::format("v {} {} {}\n", v[0], v[1], v[2]);
+        out << fmt::format("v {} {} {}\n", static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]));
     for (const Triangle& t : triangles)
         out << fmt::format("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1);
 }
@@ -96,7 +96,7 @@ FrameOutput::FrameOutput(const SimulateOptions& options, const FoundScene& scene
         layout_.nodes.push_back(static_cast<std::uint32_t>(body.simulation.body().size()));
         names_.push_back(body.name);
         if (!options.meshes.empty())
-            surface_.push_back(std::make_unique<SurfaceEvaluator>(*body.simulation.surface()));
+            surface_.push_back(std::make_unique<SurfaceEvaluator<float>>(*body.simulation.surface()));
     }
     if (!options.meshes.empty()) {
         std::error_code error;

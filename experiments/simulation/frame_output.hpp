@@ -31,7 +31,7 @@ private:
     std::string checkpoint_;
     FrameLayout layout_;
     std::vector<std::string> names_;
-    std::vector<std::unique_ptr<SurfaceEvaluator>> surface_; ///< if there are meshes to write
+    std::vector<std::unique_ptr<SurfaceEvaluator<float>>> surface_; ///< if there are meshes to write
     std::ofstream frames_;
     std::size_t bytes_ = 0;
 };

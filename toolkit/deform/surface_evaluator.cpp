@@ -42,10 +42,20 @@ bool is_finite(const AffineMap& map)
     return true;
 }
 
+Vec3 image(const AffineMap& map, const Vec3& p)
+{
+    Vec3 x;
+    for (int r = 0; r < 3; ++r)
+        x[r] = map.m[r][0] * p[0] + map.m[r][1] * p[1] + map.m[r][2] * p[2] + map.m[r][3];
+    return x;
+}
+
 } // namespace
 
-SurfaceEvaluator::SurfaceEvaluator(const DeformableSurface& surface) : surface_(&surface)
+template <class T> SurfaceEvaluator<T>::SurfaceEvaluator(const DeformableSurface& surface) : surface_(&surface)
 {
+    if constexpr (sizeof(T) == 4)
+        centre_ = extent(surface.mesh).centre;
     const std::vector<Vec3>& rest = surface.mesh.vertices;
     std::vector<std::uint32_t> order(rest.size());
     std::iota(order.begin(), order.end(), 0u);
@@ -58,7 +68,7 @@ SurfaceEvaluator::SurfaceEvaluator(const DeformableSurface& surface) : surface_(
         for (std::size_t lane = 0; lane < 8; ++lane) {
             const std::uint32_t k = group.vertex[lane] = order[std::min(first + lane, order.size() - 1)];
             for (int r = 0; r < 3; ++r)
-                group.rest[r][lane] = rest[k][r];
+                group.rest[r][lane] = static_cast<T>(rest[k][r] - centre_[r]);
             const auto row = surface.weights.of(k).node;
             nodes.insert(nodes.end(), row.begin(), row.end());
         }
@@ -72,32 +82,53 @@ SurfaceEvaluator::SurfaceEvaluator(const DeformableSurface& surface) : surface_(
             const Weights::Row row = surface.weights.of(group.vertex[lane]);
             for (std::size_t e = 0; e < row.node.size(); ++e) {
                 const auto place = static_cast<std::size_t>(std::lower_bound(nodes.begin(), nodes.end(), row.node[e]) - nodes.begin());
-                weight_[8 * (group.first + place) + lane] = row.weight[e];
+                weight_[8 * (group.first + place) + lane] = static_cast<T>(row.weight[e]);
             }
         }
         groups_.push_back(group);
     }
 }
 
-void SurfaceEvaluator::operator()(std::span<const AffineMap> maps, std::span<Vec3> out) const
+template <class T> void SurfaceEvaluator<T>::operator()(std::span<const AffineMap> maps, std::span<Vec3> out) const
 {
     require_default_arithmetic();
-    const bool all_finite = std::all_of(maps.begin(), maps.end(), is_finite);
+    std::vector<std::uint8_t> finite(maps.size());
+    Vec3 origin = Vec3::Zero();
+    std::size_t count = 0;
+    for (std::size_t j = 0; j < maps.size(); ++j) {
+        finite[j] = is_finite(maps[j]);
+        count += finite[j];
+        if (finite[j] && sizeof(T) == 4) // the mean image of the rest centre
+            origin += (image(maps[j], centre_) - origin) / static_cast<double>(count);
+    }
+    AlignedVector<T> packed(12 * maps.size(), 0);
+    for (std::size_t j = 0; j < maps.size(); ++j) {
+        const Vec3 t = sizeof(T) == 4 && finite[j] ? Vec3(image(maps[j], centre_) - origin) : Vec3(maps[j].m[0][3], maps[j].m[1][3], maps[j].m[2][3]);
+        for (std::size_t r = 0; r < 3; ++r) {
+            for (std::size_t c = 0; c < 3; ++c)
+                packed[12 * j + 4 * r + c] = static_cast<T>(maps[j].m[r][c]);
+            packed[12 * j + 4 * r + 3] = static_cast<T>(t[static_cast<Eigen::Index>(r)]);
+        }
+    }
+    const bool all_finite = count == maps.size();
     parallel_blocks(groups_.size(), 128, [&](std::size_t first, std::size_t last) {
         for (std::size_t g = first; g < last; ++g) {
             const Group& group = groups_[g];
             const std::uint32_t* node = node_.data() + group.first;
-            if (!all_finite && !std::all_of(node, node + group.count, [&](std::uint32_t j) { return is_finite(maps[j]); })) {
+            if (!all_finite && !std::all_of(node, node + group.count, [&](std::uint32_t j) { return finite[j]; })) {
                 for (const std::uint32_t k : group.vertex) // 0 times infinity is no 0
                     out[k] = evaluate_vertex(surface_->mesh.vertices[k], surface_->weights.of(k), maps);
                 continue;
             }
-            double place[3][8];
-            evaluate_group(group.rest[0], node, weight_.data() + 8 * std::size_t(group.first), group.count, maps.data(), place[0]);
+            alignas(64) T place[3][8];
+            evaluate_group(group.rest[0], node, weight_.data() + 8 * std::size_t(group.first), group.count, packed.data(), place[0]);
             for (std::size_t lane = 0; lane < 8; ++lane)
-                out[group.vertex[lane]] = {place[0][lane], place[1][lane], place[2][lane]};
+                out[group.vertex[lane]] = origin + Vec3(place[0][lane], place[1][lane], place[2][lane]);
         }
     });
 }
+
+template class SurfaceEvaluator<double>;
+template class SurfaceEvaluator<float>;
 
 } // namespace cinch
