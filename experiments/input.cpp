@@ -159,6 +159,7 @@ Inputs load_scene(const InputOptions& options)
     for (const std::size_t b : chosen) {
         Input body;
         body.name = simulation.bodies().size() == 1 ? options.input : options.input + "/" + simulation.bodies()[b].name;
+        body.simulated = true;
         body.simulation_nodes_fixed = found.scene.bodies[b].nodes == 0;
         body.surface = *simulation.bodies()[b].simulation.surface();
         body.clip.name = "simulated";

@@ -29,6 +29,7 @@ struct Input {
     std::string name;
     DeformableSurface surface;
     Clip clip;
+    bool simulated = false; ///< by a scene
     bool simulation_nodes_fixed = false; ///< the input brings its own, instead of as many as asked for
     std::vector<std::string> report; ///< one line each: what was loaded, and what was changed or left out
 };

@@ -16,6 +16,7 @@
 #include "toolkit/bounds/bound_box.hpp"
 #include "toolkit/hierarchy/packed_bvh.hpp"
 #include "toolkit/hierarchy/spheres.hpp"
+#include "toolkit/surface/input_error.hpp"
 
 namespace cinch {
 namespace {
@@ -127,13 +128,64 @@ std::vector<Figure> figures_of(const Times (&times)[3][3])
     return figures;
 }
 
+// Rows of what was measured, for people.
+void print_rows(const std::vector<nlohmann::ordered_json>& records)
+{
+    std::vector<std::vector<std::string>> rows;
+    for (const auto& r : records)
+        rows.push_back({grouped(r["vertices"].get<std::size_t>()), std::to_string(r["n"].get<std::size_t>()), r["method"], microseconds(r["ns_per_bound"])});
+    fmt::print("{}", table({"vertices", "n", "method", "microseconds"}, rows));
+    std::fflush(stdout);
+}
+
+// The same measurement on what the user names, in its last frame: with the paper's numbers of simulation nodes where these can be chosen.
+int scaling_of(const ScalingOptions& options)
+{
+    std::vector<nlohmann::ordered_json> records;
+    InputOptions what;
+    what.input = options.input;
+    what.frames = 1;
+    what.seed = options.seed;
+    Input input = load_input(what);
+    const bool fixed = input.simulation_nodes_fixed;
+    for (std::size_t i = 0; i < (fixed ? 1 : std::size(node_counts)) && !interrupted(); ++i) {
+        if (!fixed) {
+            what.nodes = node_counts[i];
+            input = load_input(what);
+        }
+        const Times times = options.precision == Precision::float32 ? measure<float>(input, options) : measure<double>(input, options);
+        for (const std::string& name : contestants)
+            records.push_back({{"experiment", "scaling"}, {"input", input.name}, {"method", name}, {"precision", name_of(options.precision)},
+                               {"n", input.surface.weights.node_count}, {"vertices", input.surface.mesh.vertices.size()}, {"ns_per_bound", times.ns.at(name)}});
+    }
+    const Provenance from = provenance(1, options.seed);
+    print_records(records, options.output, from);
+    if (!options.output.json && !options.output.csv) {
+        for (const std::string& line : input.report)
+            fmt::print("{}\n", line);
+        fmt::print("\nTime of one bound of the whole surface (six directions), {}\n\n", name_of(options.precision));
+        print_rows(records);
+        fmt::print("\n{}\n", describe(from));
+        std::fflush(stdout);
+    }
+    if (interrupted()) {
+        fmt::print(stderr, "cinch: interrupted after {} sizes\n", records.size() / contestants.size());
+        return 130;
+    }
+    return 0;
+}
+
 } // namespace
 
 int scaling(const ScalingOptions& options)
 {
     require_plottable(options.output.plot);
+    if (!options.input.empty() && !options.output.plot.empty())
+        throw InputError("--plot is of the brain's table; use --csv with an input of your own");
     pin_to_one_core();
     catch_interrupt();
+    if (!options.input.empty())
+        return scaling_of(options);
     Times times[3][3];
     std::vector<nlohmann::ordered_json> records;
     {
@@ -163,13 +215,8 @@ int scaling(const ScalingOptions& options)
             records.push_back({{"experiment", "scaling"}, {"figure", f.what}, {"measured", f.measured}, {"target", f.target}, {"reached", f.reached}});
     print_records(records, options.output, from);
     if (!whole) {
-        if (!options.output.json && !options.output.csv) {
-            std::vector<std::vector<std::string>> rows;
-            for (const auto& r : records)
-                rows.push_back({grouped(r["vertices"].get<std::size_t>()), std::to_string(r["n"].get<int>()), r["method"], microseconds(r["ns_per_bound"])});
-            fmt::print("{}", table({"vertices", "n", "method", "microseconds"}, rows));
-            std::fflush(stdout);
-        }
+        if (!options.output.json && !options.output.csv)
+            print_rows(records);
         fmt::print(stderr, "cinch: interrupted after {} of 9 sizes\n", records.size() / contestants.size());
         return 130;
     }

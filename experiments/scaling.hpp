@@ -13,6 +13,7 @@ struct ScalingOptions {
     int passes = 1;
     double seconds = 1; ///< of measuring per size
     std::uint64_t seed = 0;
+    std::string input; ///< measured instead of the brain: a scene's first body, a mesh or a character
     OutputOptions output;
 };
 

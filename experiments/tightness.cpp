@@ -168,9 +168,11 @@ int tightness(const TightnessOptions& given)
     if (!options.nodes.empty() && !scripted)
         throw InputError("--sweep needs a shape or a mesh without --weights; this input brings its own simulation nodes");
     std::vector<std::string> motions{options.input.motion};
-    if (scripted && options.input.motion.empty())
+    if (scripted && !first.simulated && options.input.motion.empty())
         motions = {"strong", "mild"};
-    if (options.nodes.empty() && scripted)
+    if (options.nodes.empty() && first.simulated && scripted)
+        options.nodes = {65, 128, 225, 512}; // fewer may leave nothing to pin
+    else if (options.nodes.empty() && scripted)
         options.nodes = {8, 16, 32, 65, 128, 225, 512};
 
     std::vector<nlohmann::ordered_json> records;

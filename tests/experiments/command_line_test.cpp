@@ -41,7 +41,7 @@ TEST_CASE("bad usage exits 2 with one line")
     check_refused("verify --frames 0", "--frames");
     check_refused("verify --leaf none", "--leaf");
     check_refused("verify --unknown", "--unknown");
-    check_refused("verify brains", "no such file, and no shape of that name");
+    check_refused("verify brains", "no such file, and no shape");
     check_refused("verify brain --motion wiggle", "known are strong, mild");
     check_refused("verify brain --clip Walk", "--clip needs");
     check_refused("verify brain --fps 30", "--fps needs");

@@ -250,3 +250,36 @@ TEST_CASE("a bar that was held stretched stays longer if it flows, and keeps its
     CHECK(elastic == Approx(rest).epsilon(0.01));
     CHECK(flowed > 1.1 * rest);
 }
+
+TEST_CASE("a block comes to rest on the ground, and friction stops what slides")
+{
+    const MeshlessBody body = lattice_body({0.6, 0.4, 0.2}, 6, 4, 2);
+    for (const double friction : {0.0, 0.5}) {
+        BodySimulation s = soft(body, 1e5);
+        s.add(make_gravity({0, 0, -10}));
+        s.add(make_viscosity(300));
+        Ground ground;
+        ground.stiffness = 2e6; // 480 N sink it by 0.24 mm, were all of it to touch
+        ground.friction = friction;
+        ground.at_nodes = true;
+        s.add(make_ground(ground));
+        Field x = moved(body, Mat3::Identity(), {0, 0, 0.06}, 0, 1), v = moved(body, Mat3::Zero(), {1, 0, 0}, 0, 1);
+        s.place(x, v);
+        REQUIRE(s.advance(1.5, implicitly(1.0 / 240, 1e-4)).failure.empty());
+        Vec3 moved_by = Vec3::Zero();
+        double lowest = 1;
+        for (std::size_t i = 0; i < body.size(); ++i) {
+            moved_by += (at(s.positions(), i) - body.rest[i]) / static_cast<double>(body.size());
+            lowest = std::min(lowest, at(s.positions(), i)[2]);
+        }
+        CAPTURE(friction, moved_by.transpose(), lowest);
+        CHECK(lowest > -0.01);
+        CHECK(lowest < 0.001);
+        if (friction > 0) {
+            CHECK(momentum(s).norm() < 0.02 * 48);          // 48 kg
+            CHECK(moved_by[0] == Approx(0.1).margin(0.05)); // v²/(2 μ g)
+        } else {
+            CHECK(moved_by[0] == Approx(1.5).margin(0.05));
+        }
+    }
+}
