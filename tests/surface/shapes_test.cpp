@@ -70,3 +70,31 @@ TEST_CASE("centre_and_scale puts the longest half-extent where asked, without ov
     centre_and_scale(point, 1.2);
     CHECK(point.vertices[0] == Vec3(0, 0, 0));
 }
+
+TEST_CASE("boxes are closed and face outward; a sheet is open")
+{
+    const TriangleMesh cuboid = box({2, 3, 4}, {2, 1, 3});
+    CHECK(cuboid.vertices.size() == 3 * 2 * 4); // no lattice point lies inside
+    CHECK(signed_volume(cuboid) == Approx(24));
+    std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
+    for (const Triangle& t : cuboid.triangles)
+        for (int c = 0; c < 3; ++c)
+            ++edges[{t[c], t[(c + 1) % 3]}];
+    for (const auto& [edge, times] : edges) {
+        CHECK(times == 1);
+        CHECK(edges.count({edge.second, edge.first}) == 1);
+    }
+    const TriangleMesh sheet = box({1, 2, 0}, {3, 2, 1});
+    CHECK(sheet.vertices.size() == 12);
+    CHECK(sheet.triangles.size() == 12);
+    CHECK(signed_volume(sheet) == 0);
+}
+
+TEST_CASE("shapes have names")
+{
+    for (const std::string& name : shape_names())
+        if (name != "brain-145000")
+            CHECK(named_shape(name)->triangles.size() > 0);
+    CHECK(named_shape("santa-45682")->vertices.size() == 45682);
+    CHECK_FALSE(named_shape("cube"));
+}

@@ -14,6 +14,7 @@ namespace cinch {
 
 using Clock = std::chrono::steady_clock;
 namespace {
+constexpr double most_substeps = 1e6; // of one call
 double since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 } // namespace
 
@@ -100,7 +101,7 @@ void BodySimulation::assemble(const Configuration& c, Parts parts)
     if (parts == Parts::damping)
         return;
     for (Slot& slot : effects_)
-        slot.effect->prepare_product(c);
+        slot.effect->prepare_product(c, parts == Parts::stiffness);
 }
 
 // stress_ = −H dG and out −= block p; the stresses are still to be carried to the nodes.
@@ -196,10 +197,14 @@ StepReport BodySimulation::advance(double dt_s, const Integration& integration)
     for (const Pin& pin : pins_)
         turn = std::max(turn, pin.turn(time_s_, time_s_ + dt_s));
     const double step = std::min(integration.step_s, dt_s / std::max(1.0, std::ceil(turn / 0.4)));
-    if (integration.method == Integration::Method::explicit_euler)
+    if (!(dt_s / step <= most_substeps))
+        report.failure = "needs more than a million steps: a smaller frame, a longer step or a slower turn";
+    else if (integration.method == Integration::Method::explicit_euler)
         ExplicitStep(*this, integration).advance(dt_s, step, report);
     else
         ImplicitStep(*this, integration).advance(dt_s, step, report);
+    if (report.failure.empty() && !(whole(x_).allFinite() && whole(v_).allFinite() && std::all_of(plastic_inverse_.begin(), plastic_inverse_.end(), [](const Mat3& p) { return p.allFinite(); })))
+        report.failure = "positions are no longer finite";
     report.dt_s = dt_s;
     report.seconds = since(start);
     if (!report.failure.empty()) {
@@ -234,15 +239,7 @@ double BodySimulation::kinetic() const
     return sum;
 }
 
-double BodySimulation::potential()
-{
-    const Configuration c = configure(x_, time_s_);
-    double sum = 0;
-    for (Slot& slot : effects_)
-        if (!slot.effect->dissipates())
-            sum += slot.effect->energy(c);
-    return sum;
-}
+double BodySimulation::potential() { return potential_at(x_, time_s_); }
 
 Field BodySimulation::forces(std::optional<std::size_t> only)
 {
@@ -260,6 +257,25 @@ Field BodySimulation::stiffness(const Field& dx)
     add_product(c, dx, product);
     whole(product) *= -1;
     return product;
+}
+
+bool BodySimulation::pins_move(double from_s, double to_s) const
+{
+    for (const Pin& pin : pins_)
+        for (std::size_t k = 0; k < pin.nodes.size(); ++k)
+            if (pin.path(k, from_s) != pin.path(k, to_s))
+                return true;
+    return false;
+}
+
+double BodySimulation::potential_at(const Field& x, double time_s)
+{
+    const Configuration c = configure(x, time_s);
+    double sum = 0;
+    for (Slot& slot : effects_)
+        if (!slot.effect->dissipates())
+            sum += slot.effect->energy(c);
+    return sum;
 }
 
 void BodySimulation::save(std::ostream& out) const

@@ -23,12 +23,14 @@ struct Integration {
     int most_iterations = 200; ///< implicit: of Newton's method
     bool project = true;       ///< implicit: make the Hessian positive semidefinite where it proves not to be (off only in experiments)
     Completion completion = Completion::on;
+    bool (*cancelled)() = nullptr; ///< asked between steps; a cancelled call fails, and keeps the state before it
 };
 
 /// What a step did.
 struct StepReport {
     double dt_s = 0;
     int substeps = 0, iterations = 0, products = 0; ///< Newton iterations; products with the Hessian
+    int halved = 0;          ///< steps that were taken back and made in halves
     int projected = 0;       ///< iterations that needed a positive semidefinite Hessian
     double residual = 0;     ///< m/s², see tolerance; 0 for the explicit integrator
     bool at_rounding = false; ///< the residual is what rounding leaves, above the tolerance
@@ -98,6 +100,8 @@ private:
     /// The end of a step: pins in place, with their velocity, and what flows.
     void finish(double from_s, double dt_s);
     void move_pins(Field& x, double time_s) const;
+    bool pins_move(double from_s, double to_s) const;
+    double potential_at(const Field& x, double time_s);
     void zero_pinned(Field& f) const;
     template <class Call> static void timed(Slot& slot, const Call& call)
     {

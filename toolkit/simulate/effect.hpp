@@ -45,8 +45,8 @@ public:
     virtual void add_curvature(const Configuration&, Curvature) const {}
     /// Whether add_product and add_diagonal are to be called.
     virtual bool couples_nodes() const { return false; }
-    /// Called once per configuration before them.
-    virtual void prepare_product(const Configuration&) {}
+    /// Called once per configuration before them; `worst`: for what the next steps may meet, not for what is.
+    virtual void prepare_product(const Configuration&, bool worst) { (void)worst; }
     /// Adds −∂²U/∂X² · dx, for the parts that are not local to a node. `dj` is the change of every G_i under dx.
     virtual void add_product(const Configuration&, const Field& dx, const MatrixField& dj, Forces) const
     {

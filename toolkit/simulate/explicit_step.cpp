@@ -4,20 +4,27 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 namespace cinch {
 
-// Of M⁻¹K (or M⁻¹C) on the nodes that move, by magnitude; 10 per cent up, as a power iteration comes from below.
+// Of M⁻¹K (or M⁻¹C) on the nodes that move, by magnitude; 10 per cent up, as a power iteration comes from below. It begins where
+// the last one ended, with a tenth of noise, so that modes that are new have a share.
 double ExplicitStep::greatest_eigenvalue(const Configuration& c, int iterations, bool stiffness)
 {
     const std::size_t n = b_.body_.size();
     Field& mode = b_.slow_mode_;
-    if (mode.size() != 4 * n) {
+    const bool fresh = mode.size() != 4 * n;
+    if (fresh) {
         mode.assign(4 * n, 0);
-        for (std::size_t i = 0; i < 4 * n; ++i)
-            if (i % 4 != 3)
-                mode[i] = std::sin(0.7 + 12.9898 * static_cast<double>(i % 1009)); // every mode has a share
-        iterations *= 20;
+        iterations *= 10;
+    }
+    double size = fresh ? 1 : whole(mode).norm();
+    if (!(size > 0) || !std::isfinite(size))
+        size = 1;
+    for (std::size_t i = 0; i < 4 * n; ++i) {
+        const double noise = i % 4 == 3 ? 0 : std::sin(0.7 + 12.9898 * static_cast<double>(i % 1009));
+        mode[i] = (std::isfinite(mode[i]) ? mode[i] / size : 0) + (fresh ? 1 : 0.1 / std::sqrt(static_cast<double>(3 * n))) * noise;
     }
     double value = 0;
     Field product(4 * n);
@@ -35,16 +42,15 @@ double ExplicitStep::greatest_eigenvalue(const Configuration& c, int iterations,
         else
             b_.add_local_product(mode, product);
         b_.zero_pinned(product);
-        value = 0;
         double next = 0;
         for (std::size_t i = 0; i < n; ++i) {
             const Vec3 image = -at(product, i) / b_.body_.mass[i];
             next += b_.body_.mass[i] * image.squaredNorm();
             at(product, i) = image;
         }
-        value = std::sqrt(next); // ‖M⁻¹K mode‖ in the norm in which the mode is 1
-        if (!(value > 0) || !std::isfinite(value))
-            return std::isfinite(value) ? 0 : std::numeric_limits<double>::infinity();
+        value = std::max(value, std::sqrt(next)); // ‖M⁻¹K mode‖ in the norm in which the mode is 1; at most the eigenvalue
+        if (!(next > 0) || !std::isfinite(next))
+            return std::isfinite(next) ? 1.1 * value : std::numeric_limits<double>::infinity();
         mode = product;
     }
     return 1.1 * value;
@@ -53,9 +59,9 @@ double ExplicitStep::greatest_eigenvalue(const Configuration& c, int iterations,
 double ExplicitStep::longest_stable(const Configuration& c)
 {
     b_.assemble(c, BodySimulation::Parts::stiffness);
-    const double squared = greatest_eigenvalue(c, 3, true);
+    const double squared = greatest_eigenvalue(c, 4, true);
     double damping = 0;
-    if (std::any_of(b_.effects_.begin(), b_.effects_.end(), [](const auto& slot) { return slot.effect->dissipates(); })) {
+    if (std::any_of(b_.effects_.begin(), b_.effects_.end(), [](const auto& slot) { return slot.effect->dissipates() || slot.effect->couples_nodes(); })) {
         b_.assemble(c, BodySimulation::Parts::damping);
         const Field mode = b_.slow_mode_;
         damping = greatest_eigenvalue(c, 16, false);
@@ -68,42 +74,65 @@ double ExplicitStep::longest_stable(const Configuration& c)
 void ExplicitStep::advance(double dt_s, double longest_s, StepReport& report)
 {
     constexpr int between_estimates = 100; // some ten periods of the fastest mode
-    const std::size_t n = b_.body_.size();
     double done = 0;
-    Field force(4 * n);
+    double stable = longest_stable(b_.configure(b_.x_, b_.time_s_)), cap = longest_s;
     while (done < dt_s) {
+        if (integration_.cancelled && integration_.cancelled()) {
+            report.failure = "cancelled";
+            return;
+        }
         // What remains is cut into equal substeps, so that the last one is no splinter.
-        const double stable = integration_.safety * longest_stable(b_.configure(b_.x_, b_.time_s_));
-        const double pieces = std::ceil((dt_s - done) / std::min(stable, longest_s) * (1 - 1e-12));
+        const double pieces = std::ceil((dt_s - done) / std::min(integration_.safety * stable, cap) * (1 - 1e-12));
         if (!(pieces >= 1) || pieces > 1e7) {
             report.failure = "no stable substep: the material is too stiff, or the state has broken down";
             return;
         }
         const double dt = (dt_s - done) / pieces;
         const int run = static_cast<int>(std::min<double>(pieces, between_estimates));
-        for (int s = 0; s < run; ++s) {
-            const Configuration c = b_.configure(b_.x_, b_.time_s_);
-            std::fill(force.begin(), force.end(), 0);
-            b_.add_forces(c, force);
-            for (auto& slot : b_.effects_)
-                slot.effect->remember(c, dt);
-            for (std::size_t i = 0; i < n; ++i) {
-                if (b_.pinned_[i])
-                    continue;
-                at(b_.v_, i) += dt / b_.body_.mass[i] * at(force, i);
-                at(b_.x_, i) += dt * at(b_.v_, i);
-            }
-            const double before = b_.time_s_;
-            b_.time_s_ += dt;
-            b_.finish(before, dt);
-            ++report.substeps;
+        std::ostringstream before;
+        b_.save(before);
+        for (int s = 0; s < run; ++s)
+            substep(dt);
+        const bool finite = whole(b_.x_).allFinite() && whole(b_.v_).allFinite();
+        stable = finite ? longest_stable(b_.configure(b_.x_, b_.time_s_)) : 0;
+        if (!(dt <= 0.95 * stable) && dt > 1e-7 * dt_s) { // where they lead, these steps are too long: take them back
+            const double too_long = dt;
+            const Field mode = b_.slow_mode_;
+            std::istringstream back(before.str());
+            b_.restore(back);
+            b_.slow_mode_ = finite ? mode : b_.slow_mode_;
+            cap = std::min(cap, 0.4 * too_long);
+            stable = longest_stable(b_.configure(b_.x_, b_.time_s_));
+            ++report.halved;
+            continue;
         }
-        done = run == static_cast<int>(pieces) ? dt_s : done + dt * run;
-        if (!whole(b_.x_).allFinite() || !whole(b_.v_).allFinite()) {
+        if (!finite) {
             report.failure = "positions are no longer finite";
             return;
         }
+        cap = std::min(longest_s, 1.5 * cap);
+        report.substeps += run;
+        done = run == static_cast<int>(pieces) ? dt_s : done + dt * run;
     }
+}
+
+void ExplicitStep::substep(double dt)
+{
+    const std::size_t n = b_.body_.size();
+    const Configuration c = b_.configure(b_.x_, b_.time_s_);
+    force_.assign(4 * n, 0);
+    b_.add_forces(c, force_);
+    for (auto& slot : b_.effects_)
+        slot.effect->remember(c, dt);
+    for (std::size_t i = 0; i < n; ++i) {
+        if (b_.pinned_[i])
+            continue;
+        at(b_.v_, i) += dt / b_.body_.mass[i] * at(force_, i);
+        at(b_.x_, i) += dt * at(b_.v_, i);
+    }
+    const double before = b_.time_s_;
+    b_.time_s_ += dt;
+    b_.finish(before, dt);
 }
 
 } // namespace cinch

@@ -5,7 +5,8 @@
 
 namespace cinch {
 
-/// Symplectic Euler: v += Δt f(x)/m, then x += Δt v, in substeps that a power iteration proves stable at the present state.
+/// Symplectic Euler: v += Δt f(x)/m, then x += Δt v, in substeps that a power iteration finds stable where they begin and where they
+/// end; those that are not are taken back and made shorter.
 class ExplicitStep {
 public:
     ExplicitStep(BodySimulation& body, const Integration& integration) : b_(body), integration_(integration) {}
@@ -16,10 +17,12 @@ public:
     double longest_stable(const Configuration& c);
 
 private:
+    void substep(double dt);
     double greatest_eigenvalue(const Configuration& c, int iterations, bool stiffness);
 
     BodySimulation& b_;
     const Integration& integration_;
+    Field force_;
 };
 
 } // namespace cinch

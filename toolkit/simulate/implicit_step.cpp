@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -20,12 +21,40 @@ void ImplicitStep::advance(double dt_s, double longest_s, StepReport& report)
     const double start = b_.time_s_;
     const auto pieces = static_cast<std::size_t>(std::max(1.0, std::ceil(dt_s / longest_s * (1 - 1e-12))));
     for (std::size_t s = 0; s < pieces; ++s) {
-        const double from = b_.time_s_;
         const double to = s + 1 == pieces ? start + dt_s : start + dt_s * static_cast<double>(s + 1) / static_cast<double>(pieces);
-        if (!step(to - from, report))
+        if (!step_without_gain(to, 0, report))
             return;
-        ++report.substeps;
     }
+}
+
+// Implicit Euler damps, but where the energy is not convex a long step can come out with more than it began with: it is then made
+// in halves. Energies are compared at one time, so that forces that change with it do their work; pins that move do theirs.
+bool ImplicitStep::step_without_gain(double to, int depth, StepReport& report)
+{
+    constexpr int most_halvings = 8;
+    if (integration_.cancelled && integration_.cancelled()) {
+        report.failure = "cancelled";
+        return false;
+    }
+    const double from = b_.time_s_;
+    std::ostringstream state;
+    const bool guard = depth < most_halvings && !b_.pins_move(from, to);
+    const double before = guard ? b_.kinetic() + b_.potential_at(b_.x_, to) : 0;
+    if (guard)
+        b_.save(state);
+    if (!step(to - from, report))
+        return false;
+    if (guard) {
+        const double potential = b_.potential_at(b_.x_, to), kinetic = b_.kinetic();
+        if (kinetic + potential > before + 1e-9 * (kinetic + std::abs(potential))) {
+            std::istringstream back(state.str());
+            b_.restore(back);
+            ++report.halved;
+            return step_without_gain(0.5 * (from + to), depth + 1, report) && step_without_gain(to, depth + 1, report);
+        }
+    }
+    ++report.substeps;
+    return true;
 }
 
 ImplicitStep::Objective ImplicitStep::objective(const Field& x, double time, double dt)
@@ -183,7 +212,8 @@ bool ImplicitStep::step(double dt, StepReport& report)
         gradient(c, dt, gradient_);
         report.residual = 0;
         for (std::size_t i = 0; i < body.size(); ++i)
-            report.residual = std::max(report.residual, at(gradient_, i).norm() / (body.mass[i] * dt * dt));
+            if (const double off = at(gradient_, i).norm() / (body.mass[i] * dt * dt); !(off <= report.residual)) // NaN stays
+                report.residual = off;
         if (report.residual <= integration_.tolerance)
             break;
         if (trusted && !(report.residual < 0.5 * trusted_residual)) { // no longer any better: this is as near as doubles get

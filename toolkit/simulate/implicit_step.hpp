@@ -17,6 +17,7 @@ private:
     struct Objective {
         double value, magnitude; ///< E, and the sum of the magnitudes of its parts, for rounding
     };
+    bool step_without_gain(double to_s, int depth, StepReport& report);
     bool step(double dt, StepReport& report);
     Objective objective(const Field& x, double time, double dt);
     void gradient(const Configuration& c, double dt, Field& out);

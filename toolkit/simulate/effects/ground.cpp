@@ -9,6 +9,8 @@
 namespace cinch {
 namespace {
 
+constexpr double slow_m_per_s = 1e-3;
+
 // What touches the ground: the vertices of the surface, or the nodes of a body that has none.
 class GroundContact : public Effect {
 public:
@@ -37,50 +39,74 @@ public:
         });
     }
     bool couples_nodes() const override { return true; }
-    void prepare_product(const Configuration& given) override
+    void prepare_product(const Configuration& given, bool worst) override
     {
         const Configuration c = seen(given);
         touching_.clear();
-        each_contact(c, [&](std::size_t k, const Vec3&, double) { touching_.push_back(k); });
+        if (worst) { // anything may touch within the steps to come
+            for (std::size_t k = 0; k < points_of(c); ++k)
+                touching_.push_back({k, stiffness(c), 0});
+            return;
+        }
+        each_contact(c, [&](std::size_t k, const Vec3&, double depth) { touching_.push_back({k, depth > 0 ? stiffness(c) : 0, drag(k)}); });
     }
     void add_product(const Configuration& given, const Field& dx, const MatrixField& dj, Forces out) const override
     {
         const Configuration c = seen(given);
-        for (const std::size_t k : touching_) {
-            const Vec3 dp = point_change(c, k, dx, dj), along = ground_.normal * ground_.normal.dot(dp);
-            add_point_force(c, k, -stiffness(c) * along - drag(k) * (dp - along), out);
+        for (const Touch& t : touching_) {
+            const Vec3 dp = point_change(c, t.point, dx, dj), along = ground_.normal * ground_.normal.dot(dp);
+            add_point_force(c, t.point, -t.push * along - t.drag * (dp - along), out);
         }
     }
     void add_diagonal(const Configuration& given, std::vector<Mat3>& block) const override
     {
         const Configuration c = seen(given);
         const Mat3 along = ground_.normal * ground_.normal.transpose();
-        for (const std::size_t k : touching_) {
-            const Mat3 push = stiffness(c) * along + drag(k) * (Mat3::Identity() - along);
+        for (const Touch& t : touching_) {
+            const Mat3 push = t.push * along + t.drag * (Mat3::Identity() - along);
             if (!c.surface) {
-                block[k] += push;
+                block[t.point] += push;
                 continue;
             }
-            const Weights::Row row = c.surface->weights.of(k);
+            const Weights::Row row = c.surface->weights.of(t.point);
             for (std::size_t e = 0; e < row.node.size(); ++e)
                 block[row.node[e]] += row.weight[e] * row.weight[e] * push;
         }
     }
-    /// Friction: a drag μ N / ‖slip of the last step‖ on the slip of this one, by which it reaches Coulomb's force where things slide
-    /// steadily and holds where they rest.
-    void remember(const Configuration& given, double) override
+    /// As the drag does for an explicit step: force by velocity, c = μ N / speed. By rows: weights sum to 1, and the 4 is for what acts
+    /// through J.
+    void add_damping(const Configuration& given, Curvature out) const override
     {
         const Configuration c = seen(given);
+        for (std::size_t k = 0; k < before_.size() / 4; ++k) {
+            const double damping = drag(k) * interval_s_;
+            if (damping == 0)
+                continue;
+            if (!c.surface) {
+                out.block[k].diagonal().array() += damping;
+                continue;
+            }
+            const Weights::Row row = c.surface->weights.of(k);
+            for (std::size_t e = 0; e < row.node.size(); ++e)
+                out.block[row.node[e]].diagonal().array() += 4 * row.weight[e] * damping;
+        }
+    }
+    /// Friction: a drag μ N / ‖slip of the last step‖ on the slip of this one, by which it reaches Coulomb's force where things slide
+    /// steadily and holds where they rest: below a speed of 1 mm/s.
+    void remember(const Configuration& given, double dt_s) override
+    {
         if (ground_.friction == 0)
             return;
+        const Configuration c = seen(given);
         const std::size_t count = points_of(c);
         std::vector<double> next(4 * count, 0);
+        interval_s_ = dt_s;
         for (std::size_t k = 0; k < count; ++k) {
             const Vec3 p = point(c, k);
             std::copy_n(p.data(), 3, next.data() + 4 * k);
             const double depth = ground_.normal.dot(ground_.point - p);
             if (depth > 0 && !before_.empty()) {
-                const double size = std::max(slip(p, k).norm(), 1e-4 * c.body.spacing);
+                const double size = std::max(slip(p, k).norm(), slow_m_per_s * dt_s);
                 next[4 * k + 3] = ground_.friction * stiffness(c) * depth / size;
             }
         }
@@ -91,6 +117,7 @@ public:
         const std::size_t count = before_.size();
         write_raw<std::size_t>(out, {&count, 1});
         write_raw<double>(out, before_);
+        write_raw<double>(out, {&interval_s_, 1});
     }
     void restore(std::istream& in) override
     {
@@ -98,17 +125,19 @@ public:
         read_raw<std::size_t>(in, {&count, 1});
         before_.resize(count);
         read_raw<double>(in, before_);
+        read_raw<double>(in, {&interval_s_, 1});
     }
 
 private:
     Configuration seen(const Configuration& c) const { return {c.body, ground_.at_nodes ? nullptr : c.surface, c.x, c.gradient, c.deformation, c.plastic_inverse, c.time_s}; }
+    // What is below the plane, and what still rubs against it: depth ≥ 0.
     template <class Visit> void each_contact(const Configuration& c, const Visit& visit) const
     {
         const std::size_t count = points_of(c);
         for (std::size_t k = 0; k < count; ++k) {
             const Vec3 p = point(c, k);
-            if (const double depth = ground_.normal.dot(ground_.point - p); depth > 0)
-                visit(k, p, depth);
+            if (const double depth = ground_.normal.dot(ground_.point - p); depth > 0 || drag(k) > 0)
+                visit(k, p, std::max(depth, 0.0));
         }
     }
     double stiffness(const Configuration& c) const { return ground_.stiffness / static_cast<double>(points_of(c)); }
@@ -120,7 +149,12 @@ private:
     }
 
     Ground ground_;
-    std::vector<std::size_t> touching_; ///< in the configuration of prepare_product
+    struct Touch {
+        std::size_t point;
+        double push, drag; ///< N/m, across the plane and along it
+    };
+    std::vector<Touch> touching_; ///< in the configuration of prepare_product
+    double interval_s_ = 0;
     std::vector<double> before_; ///< per point its place when the step began, and its drag, N/m
 };
 
