@@ -174,9 +174,10 @@ Inputs load_scene(const InputOptions& options)
     {
         Progress progress("simulating frames", last);
         for (std::size_t f = 1; f <= last; ++f) {
-            for (const StepReport& step : simulation.advance())
-                if (!step.failure.empty())
-                    throw std::runtime_error(fmt::format("{} at {:.6g} s: {}", options.input, simulation.time_s(), step.failure));
+            const std::vector<StepReport> steps = simulation.advance();
+            for (std::size_t b = 0; b < steps.size(); ++b)
+                if (!steps[b].failure.empty())
+                    throw std::runtime_error(fmt::format("{}: body '{}' at {:.6g} s: {}", options.input, simulation.bodies()[b].name, simulation.time_s(), steps[b].failure));
             if (f * wanted / last != (f - 1) * wanted / last)
                 record();
             progress.done(f);

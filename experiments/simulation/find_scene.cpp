@@ -63,14 +63,24 @@ FoundScene find_scene(const std::string& name, const SceneChanges& changes)
         if (!any)
             throw InputError::in_file(name, "--nodes needs a body whose simulation nodes are sampled; this scene gives them");
     }
-    if (changes.duration_s >= 0)
+    if (changes.duration_s != -1) {
+        if (!(changes.duration_s >= 0) || changes.duration_s / scene.frame_s > 1e6)
+            throw InputError(fmt::format("--duration {}: expected seconds >= 0 that make at most a million frames", changes.duration_s));
         scene.duration_s = changes.duration_s;
-    if (changes.step_s > 0)
+    }
+    if (changes.step_s != 0) {
+        if (!(changes.step_s > 0))
+            throw InputError(fmt::format("--step {}: expected seconds > 0", changes.step_s));
         scene.integration.step_s = changes.step_s;
+    }
     if (!changes.integrator.empty())
         scene.integration.method = changes.integrator == "explicit" ? Integration::Method::explicit_euler : Integration::Method::implicit_euler;
     // The duration is left out, so that a run can be continued for longer.
-    found.identity = checksum(text + fmt::format("|{}|{}|{}", changes.nodes, changes.step_s, changes.integrator));
+    std::string surfaces; // files that it names may change beside it
+    for (const SceneBody& body : scene.bodies)
+        if (std::error_code error; fs::is_regular_file(body.surface, error))
+            surfaces += fmt::format("{}|", checksum(read_bytes(body.surface)));
+    found.identity = checksum(surfaces + text + fmt::format("|{}|{}|{}", changes.nodes, changes.step_s, changes.integrator));
     return found;
 }
 

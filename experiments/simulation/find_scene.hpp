@@ -12,7 +12,7 @@ namespace cinch {
 /// What a user may change of a scene without writing one.
 struct SceneChanges {
     std::size_t nodes = 0; ///< of bodies whose nodes are sampled; 0 and empty: as the scene has it
-    double duration_s = -1, step_s = 0;
+    double duration_s = -1, step_s = 0; ///< −1, 0: as the scene has it
     std::string integrator;
 };
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/simulation/frame_output.hpp"
 
+#include <cmath>
 #include <filesystem>
+#include <limits>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -14,7 +16,7 @@ namespace cinch {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr std::string_view magic = "cinchchk1";
+constexpr std::string_view magic = "cinchchk2";
 
 bool is_text(const std::string& file) { return file.ends_with(".jsonl"); }
 
@@ -56,8 +58,14 @@ std::string json_lines(std::size_t frame, double time_s, const std::vector<std::
     return out;
 }
 
+enum class FrameFormat : std::uint64_t { none, binary, text };
+FrameFormat format_of(const std::string& file) { return file.empty() ? FrameFormat::none : is_text(file) ? FrameFormat::text : FrameFormat::binary; }
+
 struct Checkpoint {
-    std::uint64_t identity = 0, bytes = 0;
+    struct Header {
+        std::uint64_t identity = 0, bytes = 0, written = 0; ///< of the scene; of the file of frames; frames in it
+        FrameFormat format = FrameFormat::none;
+    } header;
     std::string state;
 };
 
@@ -66,17 +74,16 @@ Checkpoint read_checkpoint(const std::string& file)
 {
     const std::string bytes = read_bytes(file);
     Checkpoint checkpoint;
-    if (bytes.size() < magic.size() + 24 || !bytes.starts_with(magic))
+    constexpr std::size_t overhead = magic.size() + sizeof(Checkpoint::Header) + 8;
+    if (bytes.size() < overhead || !bytes.starts_with(magic))
         throw InputError::in_file(file, "is no checkpoint");
-    std::istringstream in(bytes.substr(magic.size()));
     std::uint64_t sum = 0;
-    std::istringstream end(bytes.substr(bytes.size() - 8));
+    std::istringstream in(bytes.substr(magic.size())), end(bytes.substr(bytes.size() - 8));
     read_raw<std::uint64_t>(end, {&sum, 1});
     if (sum != checksum(std::string_view(bytes).substr(0, bytes.size() - 8)))
         throw InputError::in_file(file, "was changed or is cut off");
-    read_raw<std::uint64_t>(in, {&checkpoint.identity, 1});
-    read_raw<std::uint64_t>(in, {&checkpoint.bytes, 1});
-    checkpoint.state = bytes.substr(magic.size() + 16, bytes.size() - magic.size() - 24);
+    read_raw<Checkpoint::Header>(in, {&checkpoint.header, 1});
+    checkpoint.state = bytes.substr(overhead - 8, bytes.size() - overhead);
     return checkpoint;
 }
 
@@ -104,6 +111,13 @@ FrameOutput::FrameOutput(const SimulateOptions& options, const FoundScene& scene
         if (!fs::is_directory(options.meshes))
             throw InputError::in_file(options.meshes, "is no folder and cannot be made one");
     }
+    if (!checkpoint_.empty()) {
+        std::error_code error;
+        if (fs::exists(checkpoint_, error) && !fs::is_regular_file(checkpoint_, error))
+            throw InputError::in_file(checkpoint_, "is no regular file");
+        if (!std::ofstream(checkpoint_ + ".new"))
+            throw InputError::in_file(checkpoint_, "cannot be written");
+    }
     if (options.resume.empty()) {
         if (!options.frames.empty()) {
             frames_.open(options.frames, std::ios::binary | std::ios::trunc);
@@ -112,16 +126,21 @@ FrameOutput::FrameOutput(const SimulateOptions& options, const FoundScene& scene
             require(frames_, options.frames);
             bytes_ = is_text(options.frames) ? 0 : layout_.header_bytes();
         }
-        if (!checkpoint_.empty() && !std::ofstream(checkpoint_ + ".new"))
-            throw InputError::in_file(checkpoint_, "cannot be written");
         return;
     }
     const Checkpoint checkpoint = read_checkpoint(options.resume);
-    if (checkpoint.identity != identity_)
+    if (checkpoint.header.identity != identity_)
         throw InputError::in_file(options.resume, "is of another scene, or of other settings than these");
+    if (checkpoint.header.format != format_of(options.frames))
+        throw InputError::in_file(options.resume, checkpoint.header.format == FrameFormat::none     ? "is of a run without --frames"
+                                                  : checkpoint.header.format == FrameFormat::binary ? "continues with --frames FILE, binary"
+                                                                                                    : "continues with --frames FILE.jsonl");
     std::istringstream state(checkpoint.state);
     simulation.restore(state);
-    bytes_ = checkpoint.bytes;
+    if (!state || state.peek() != std::istringstream::traits_type::eof())
+        throw InputError::in_file(options.resume, "does not fit this scene");
+    bytes_ = checkpoint.header.bytes;
+    written_ = checkpoint.header.written;
     if (options.frames.empty())
         return;
     std::error_code error;
@@ -133,36 +152,46 @@ FrameOutput::FrameOutput(const SimulateOptions& options, const FoundScene& scene
     require(frames_, options.frames);
 }
 
-void FrameOutput::write(Simulation& simulation)
+std::string FrameOutput::write(Simulation& simulation)
 {
     if (options_.frames.empty() && options_.meshes.empty())
-        return;
+        return "";
     std::vector<std::vector<AffineMap>> maps;
-    for (Simulation::Body& body : simulation.bodies())
+    for (Simulation::Body& body : simulation.bodies()) {
         maps.push_back(body.simulation.frame());
+        for (const AffineMap& map : maps.back())
+            for (const auto& row : map.m)
+                for (const double value : row)
+                    if (!std::isfinite(value))
+                        return fmt::format("body '{}' at {:.6g} s: its transforms are no longer finite", body.name, simulation.time_s());
+    }
     if (!options_.frames.empty()) {
         const std::string record = is_text(options_.frames) ? json_lines(simulation.frame(), simulation.time_s(), names_, maps)
                                                             : frame_record(layout_, simulation.frame(), simulation.time_s(), maps);
         frames_ << record;
         bytes_ += record.size();
+        ++written_;
         require(frames_, options_.frames);
     }
-    if (!options_.meshes.empty())
-        write_meshes(simulation.frame(), maps, simulation);
+    return options_.meshes.empty() ? "" : write_meshes(simulation.frame(), maps, simulation);
 }
 
-void FrameOutput::write_meshes(std::size_t frame, std::span<const std::vector<AffineMap>> maps, const Simulation& simulation)
+std::string FrameOutput::write_meshes(std::size_t frame, std::span<const std::vector<AffineMap>> maps, const Simulation& simulation)
 {
     for (std::size_t b = 0; b < maps.size(); ++b) {
         const TriangleMesh& mesh = simulation.bodies()[b].simulation.surface()->mesh;
         std::vector<Vec3> vertices(mesh.vertices.size());
         (*surface_[b])(maps[b], vertices);
+        for (const Vec3& v : vertices)
+            if (!(v.cwiseAbs().maxCoeff() <= std::numeric_limits<float>::max()))
+                return fmt::format("body '{}' at {:.6g} s: a position is beyond what a mesh file holds", names_[b], simulation.time_s());
         const fs::path file = fs::path(options_.meshes) / fmt::format("{}-{:05}.{}", names_[b], frame, options_.mesh_format);
         std::ofstream out(file, std::ios::binary);
         (options_.mesh_format == "obj" ? write_obj : write_ply)(out, vertices, mesh.triangles);
         out.flush();
         require(out, file.string());
     }
+    return "";
 }
 
 void FrameOutput::save(const Simulation& simulation)
@@ -175,9 +204,8 @@ void FrameOutput::save(const Simulation& simulation)
         return;
     std::ostringstream out;
     out << magic;
-    const std::uint64_t bytes = bytes_;
-    write_raw<std::uint64_t>(out, {&identity_, 1});
-    write_raw<std::uint64_t>(out, {&bytes, 1});
+    const Checkpoint::Header header{identity_, bytes_, written_, format_of(options_.frames)};
+    write_raw<Checkpoint::Header>(out, {&header, 1});
     simulation.save(out);
     const std::uint64_t sum = checksum(out.view());
     write_raw<std::uint64_t>(out, {&sum, 1});

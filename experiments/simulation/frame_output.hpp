@@ -16,15 +16,13 @@ public:
     /// Throws InputError if something cannot be written, or a checkpoint continues no such run; restores `simulation` from one.
     FrameOutput(const SimulateOptions& options, const FoundScene& scene, Simulation& simulation);
 
-    /// The present state of the simulation as the next frame.
-    void write(Simulation& simulation);
+    /// The present state of the simulation as the next frame; or why it is none: nothing that is not finite is ever written.
+    std::string write(Simulation& simulation);
     /// What is written stays written, and a checkpoint says so.
     void save(const Simulation& simulation);
 
-    std::size_t bytes() const { return bytes_; } ///< of the file of frames
-
 private:
-    void write_meshes(std::size_t frame, std::span<const std::vector<AffineMap>> maps, const Simulation& simulation);
+    std::string write_meshes(std::size_t frame, std::span<const std::vector<AffineMap>> maps, const Simulation& simulation);
 
     SimulateOptions options_;
     std::uint64_t identity_;
@@ -33,7 +31,7 @@ private:
     std::vector<std::string> names_;
     std::vector<std::unique_ptr<SurfaceEvaluator<float>>> surface_; ///< if there are meshes to write
     std::ofstream frames_;
-    std::size_t bytes_ = 0;
+    std::uint64_t bytes_ = 0, written_ = 0; ///< of the file of frames; frames in it
 };
 
 } // namespace cinch

@@ -84,7 +84,9 @@ Result run(const SimulateOptions& options, Simulation& simulation, FrameOutput& 
     Result result;
     result.bodies.resize(simulation.bodies().size());
     if (options.resume.empty())
-        output.write(simulation);
+        result.failure = output.write(simulation);
+    if (!result.failure.empty())
+        return result;
     output.save(simulation);
     const std::size_t first = simulation.frame(), last = simulation.frame_count() - 1;
     Progress progress("simulating frames", last > first ? last - first : 0);
@@ -95,8 +97,11 @@ Result run(const SimulateOptions& options, Simulation& simulation, FrameOutput& 
             if (!r.failure.empty() && result.failure.empty())
                 result.failure = fmt::format("body '{}' at {:.6g} s: {}", simulation.bodies()[b].name, simulation.time_s(), r.failure);
         }
-        if (!result.failure.empty())
+        if (!result.failure.empty()) {
+            if (interrupted()) // within the frame; the state is that before it
+                result.failure.clear();
             break;
+        }
         for (std::size_t b = 0; b < reports.size(); ++b) {
             const StepReport& r = reports[b];
             BodyTotals& t = result.bodies[b];
@@ -110,10 +115,11 @@ Result run(const SimulateOptions& options, Simulation& simulation, FrameOutput& 
             result.seconds += r.seconds;
             result.steps += static_cast<std::size_t>(r.substeps);
             if (options.energies && options.json)
-                fmt::print("{}\n", energies_of(simulation, options.scene, b, r).dump());
+                fmt::print("{}\n", energies_of(simulation, options.scene, b, r).dump(-1, ' ', false, Json::error_handler_t::replace));
         }
         ++result.frames;
-        output.write(simulation);
+        if (result.failure = output.write(simulation); !result.failure.empty())
+            return result; // what was saved last has no such state
         if (simulation.frame() % options.every == 0)
             output.save(simulation);
         progress.done(simulation.frame() - first);
@@ -144,12 +150,12 @@ void print_json(const SimulateOptions& options, const Simulation& simulation, co
                             {"frames", result.frames}, {"steps", result.steps}, {"ms_per_step", ms_per_step(result.seconds, result)}, {"time_s", simulation.time_s()},
                             {"failure", result.failure}, {"version", from.version}, {"commit", from.commit}, {"compiler", from.compiler}, {"flags", from.flags},
                             {"cpu", from.cpu}, {"simd", from.simd}, {"threads", from.threads}, {"seed", from.seed}}
-                           .dump());
+                           .dump(-1, ' ', false, Json::error_handler_t::replace));
     for (const auto& [name, totals] : effects)
         fmt::print("{}\n", Json{{"experiment", "simulate"}, {"scene", options.scene}, {"effect", name}, {"bodies", totals.bodies}, {"calls", totals.calls},
                                 {"ms_per_step", ms_per_step(totals.seconds, result)}}
-                               .dump());
-    fmt::print("{}\n", Json{{"experiment", "simulate"}, {"scene", options.scene}, {"effect", "shared: J and the transport of stresses"}, {"ms_per_step", ms_per_step(shared, result)}}.dump());
+                               .dump(-1, ' ', false, Json::error_handler_t::replace));
+    fmt::print("{}\n", Json{{"experiment", "simulate"}, {"scene", options.scene}, {"effect", "shared: J and the transport of stresses"}, {"ms_per_step", ms_per_step(shared, result)}}.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 void print_tables(const SimulateOptions& options, const Simulation& simulation, const Result& result, const Provenance& from)
@@ -240,7 +246,8 @@ int simulate(const SimulateOptions& options)
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
     if (options.every == 0)
         throw InputError("--every must be at least 1");
-    const FoundScene found = find_scene(options.scene, options.changes);
+    FoundScene found = find_scene(options.scene, options.changes);
+    found.scene.integration.cancelled = interrupted;
     Simulation simulation(found.scene, found.file);
     FrameOutput output(options, found, simulation);
     catch_interrupt();

@@ -73,7 +73,7 @@ TEST_CASE("what is wrong in a scene is named by its path")
         {"/effects/1/model", "rubber", "/effects/1/model: 'rubber' is unknown"},
         {"/effects/0/acceleration", json::array({0, 1}), "/effects/0/acceleration: expected an array of 3 numbers"},
         {"/effects/0/acceleration", json::array({0, 1, "x"}), "/effects/0/acceleration/2: expected a number, found \"x\""},
-        {"/effects/5/bodies", "bar", "/effects/5/bodies: expected an array of names"},
+        {"/effects/5/bodies", "bar", "/effects/5/bodies: expected names of bodies"},
         {"/effects/5/bodies/0", "bra", "/effects/5/bodies/0: there is no body 'bra'"},
         {"/effects/7/nodes/count", 0, "/effects/7/nodes/count: expected a whole number from 1"},
         {"/effects/8/nodes", json::parse(R"({"box": [[5, 5, 5], [6, 6, 6]]})"), "/effects/8/nodes: selects no simulation node of body 'bar'"},
@@ -94,14 +94,21 @@ TEST_CASE("what is wrong in a scene is named by its path")
         {"/bodies/1/nodes", 0, "/bodies/1/nodes: expected a whole number from 1"},
         {"/bodies/1/nodes", nullptr, "/bodies/1: needs one of nodes"},
         {"/bodies/1/name", "bar", "/bodies/1/name: 'bar' stands twice"},
-        {"/bodies/0/box", json::array({1, 0, 1}), "/bodies/0/box/1: must be > 0"},
+        {"/bodies/0/box", json::array({1, 0, 1}), "/bodies/0/box/1: expected a number from 1e-30"},
         {"/bodies/0/lattice", json::array({1, 2.5, 1}), "/bodies/0/lattice/1: expected a whole number"},
+        {"/bodies/1/name", "../escape", "/bodies/1/name: must be"},
+        {"/bodies/1/name", "a\nb", "/bodies/1/name: must be"},
+        {"/effects/1/model", "a\n\x1b[31m", "/effects/1/model: 'a??[31m' is unknown"},
+        {"/bodies/0/lattice", json::array({100, 100, 100}), "/bodies/0/lattice: makes more than 20,000"},
+        {"/bodies/0/cells", json::array({1000, 1000, 1000}), "/bodies/0/cells: makes more than"},
+        {"/effects/5/bodies", json::array(), "/effects/5/bodies: expected names of bodies"},
+        {"/frame", 1e300, "/frame: expected a number from 1e-9"},
         {"/bodies", json::array(), "/bodies: is empty"},
         {"/bodies/0", 7, "/bodies/0: expected an object, found 7"},
         {"/duration", -1, "/duration: expected a number >= 0"},
         {"/duration", 1e9, "/duration: makes more than a million frames"},
-        {"/integrator/step", 0, "/integrator/step: expected a number > 0"},
-        {"/integrator/step", -0.1, "/integrator/step: expected a number > 0"},
+        {"/integrator/step", 0, "/integrator/step: expected a number from 1e-9"},
+        {"/integrator/step", -0.1, "/integrator/step: expected a number from 1e-9"},
         {"/integrator/method", "rk4", "/integrator/method: 'rk4' is unknown; known are implicit, explicit"},
         {"/integrator/safety", 0.5, "/integrator/safety: is unknown"},
         {"/colour", "red", "/colour: is unknown"},
@@ -127,6 +134,9 @@ TEST_CASE("what is wrong in a scene is named by its path")
     };
     CHECK(text_complaint("{\n\"a\": ,\n}") == "s.json:2: is no JSON from here on");
     CHECK(text_complaint("") == "s.json:1: is no JSON from here on");
+    CHECK(text_complaint("{\"duration\": " + std::string(200000, '[') + std::string(200000, ']') + "}").find("nested more than 32 deep") != std::string::npos);
+    CHECK(text_complaint(R"({"duration": 1, "duration": 2})").find("'duration' stands twice") != std::string::npos);
+    CHECK(text_complaint("{\"duration\": 1, \"name\": \"\xff\"}").find("is no JSON") != std::string::npos);
     CHECK(text_complaint("[1]").find("expected an object") != std::string::npos);
     CHECK(text_complaint("{\"duration\": NaN}").find("is no JSON") != std::string::npos);
     CHECK(text_complaint("{\"duration\": 1e999}").find("s.json") != std::string::npos);

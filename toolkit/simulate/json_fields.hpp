@@ -26,12 +26,21 @@ public:
 
     [[noreturn]] void fail(const std::string& key, const std::string& expected, const Json& found) const
     {
-        std::string text = found.dump();
+        std::string text = found.is_array() ? "an array" : found.is_object() ? "an object" : found.dump(-1, ' ', true, Json::error_handler_t::replace);
         if (text.size() > 60)
             text = text.substr(0, 57) + "...";
-        throw InputError::in_file(file_, place(key) + ": expected " + expected + ", found " + text);
+        complain(key, "expected " + expected + ", found " + text);
     }
-    [[noreturn]] void complain(const std::string& key, const std::string& what) const { throw InputError::in_file(file_, place(key) + ": " + what); }
+    [[noreturn]] void complain(const std::string& key, const std::string& what) const { throw InputError::in_file(file_, printable(place(key) + ": " + what)); }
+
+    /// One line of printable characters, whatever the file has in its strings.
+    static std::string printable(std::string text)
+    {
+        for (char& c : text)
+            if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
+                c = '?';
+        return text.size() > 400 ? text.substr(0, 397) + "..." : text;
+    }
 
     std::string place(const std::string& key) const { return key.empty() ? (path_.empty() ? "/" : path_) : path_ + "/" + key; }
     bool has(const std::string& key) const { return json_->contains(key); }
@@ -47,7 +56,7 @@ public:
     {
         const Json* json = find(key);
         if (!json)
-            throw InputError::in_file(file_, place(key) + ": is missing");
+            complain(key, "is missing");
         return *json;
     }
 
@@ -105,12 +114,12 @@ public:
             v[static_cast<Eigen::Index>(i)] = number_of(key + "/" + std::to_string(i), json[i], any());
         return v;
     }
-    Vec3 direction(const std::string& key) ///< a vector of some length
+    Vec3 direction(const std::string& key) ///< of some length; of length 1 from here on
     {
         const Vec3 v = vector(key);
         if (!(v.stableNorm() > 0))
             complain(key, "must not be 0");
-        return v;
+        return v.stableNormalized();
     }
     const Json& array(const std::string& key)
     {
@@ -142,7 +151,7 @@ public:
                 std::string known;
                 for (const std::string& k : asked_)
                     known += (known.empty() ? "" : ", ") + k;
-                throw InputError::in_file(file_, place(key) + ": is unknown; known here are " + known);
+                complain(key, "is unknown; known here are " + known);
             }
     }
 

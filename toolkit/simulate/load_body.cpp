@@ -77,7 +77,13 @@ TriangleMesh load_mesh(const SceneBody& body, const std::string& file, MeshCache
             known += name + ", ";
         complain(file, body, "surface", "'" + body.surface + "' is no shape (" + known + "box, sheet) and no mesh or character file");
     }
-    TriangleMesh mesh = read_mesh(body.surface);
+    TriangleMesh mesh = [&] {
+        try {
+            return read_mesh(body.surface);
+        } catch (const InputError& error) {
+            complain(file, body, "surface", error.what());
+        }
+    }();
     if (mesh.vertices.empty() || mesh.triangles.empty())
         complain(file, body, "surface", body.surface + " has no triangles");
     return meshes[body.surface] = std::move(mesh);
@@ -105,7 +111,11 @@ LoadedBody load_body(const SceneBody& body, const std::string& file, MeshCache& 
     if (is_character(body.surface)) {
         if (body.size_m > 0)
             complain(file, body, "size", "a character keeps its own size");
-        character = read_gltf(body.surface);
+        try {
+            character = read_gltf(body.surface);
+        } catch (const InputError& error) {
+            complain(file, body, "surface", error.what());
+        }
         mesh = character->mesh;
         if (mesh.triangles.empty())
             complain(file, body, "surface", body.surface + " has no skinned triangles");
@@ -114,6 +124,9 @@ LoadedBody load_body(const SceneBody& body, const std::string& file, MeshCache& 
         if (body.size_m > 0)
             centre_and_scale(mesh, body.size_m);
     }
+
+    if (!(extent(mesh).longest_half <= 1e30) || !extent(mesh).centre.allFinite())
+        complain(file, body, "surface", "is larger than 1e30 m");
 
     double fill = 0;
     if (body.nodes > 0) {

@@ -20,6 +20,8 @@ namespace {
 // the field call this the safe inversion).
 constexpr double flat = 1e-3;
 
+constexpr std::size_t most_neighbours = 400; // the nearest ones
+
 struct Near {
     double distance;
     std::uint32_t node;
@@ -48,7 +50,7 @@ Neighbourhood within(std::span<const Vec3> nodes, std::size_t i, const std::vect
 {
     Neighbourhood n;
     for (const Near& other : near)
-        if (other.distance < h)
+        if (other.distance < h && n.node.size() < most_neighbours)
             n.node.push_back(other.node);
     std::sort(n.node.begin(), n.node.end());
     const auto count = static_cast<Eigen::Index>(n.node.size());
@@ -124,6 +126,8 @@ MeshlessBody discretise(std::span<const Vec3> nodes, std::span<const double> vol
     std::size_t coincident = 0;
     for (std::size_t i = 0; i < n; ++i) {
         const std::vector<Near> near = by_distance(nodes, i);
+        if (!near.empty() && !std::isfinite(near.back().distance))
+            throw std::invalid_argument("discretise: simulation nodes are too far apart for doubles");
         const std::size_t k = std::min(static_cast<std::size_t>(options.nearest), near.size());
         double mean = 0;
         for (std::size_t j = 0; j < k; ++j)

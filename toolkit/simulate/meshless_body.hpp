@@ -40,7 +40,7 @@ struct MeshlessBody {
 };
 
 /// `volume` (m³) of every node; empty: by the density of the nodes, as in the paper. Neighbourhoods that span less than space grow
-/// until they do or reach across the body (4 h). Throws std::invalid_argument for no nodes, values not finite or not positive.
+/// until they do or reach across the body (4 h); at most the 400 nearest. Throws std::invalid_argument for no nodes, values not finite or not positive.
 MeshlessBody discretise(std::span<const Vec3> nodes, std::span<const double> volume, const MeshlessOptions& options);
 
 /// Shares of the closed mesh's volume: that of the points of space that are nearest to each node. Empty if the mesh encloses none.

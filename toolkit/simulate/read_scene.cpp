@@ -12,6 +12,10 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr const char* name_characters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_."; // also of file names
+constexpr std::size_t most_nodes = 20000; // of a body
+constexpr JsonFields::Range length{1e-30, 1e30, false, "a number from 1e-30 to 1e30 (m)"};
+constexpr JsonFields::Range interval{1e-9, 1e6, false, "a number from 1e-9 to 1e6 (s)"};
 
 NodeSelection read_nodes(JsonFields& parent, const std::string& key)
 {
@@ -50,7 +54,7 @@ Turning read_turning(JsonFields& f)
     t.axis = f.direction("axis");
     t.centre = f.vector("centre", Vec3::Zero());
     if (f.has("period")) {
-        t.period_s = f.number("period", JsonFields::positive());
+        t.period_s = f.number("period", interval);
         t.most = f.number("swing", JsonFields::any());
     } else {
         t.rate = f.number("rate", JsonFields::any());
@@ -184,19 +188,23 @@ SceneBody read_body(const Json& json, const std::string& file, const std::string
     body.path = "/bodies/" + std::to_string(index);
     JsonFields f(json, file, body.path);
     body.name = f.text("name", "body-" + std::to_string(index));
+    if (body.name.empty() || body.name.size() > 64 || body.name[0] == '.' || body.name.find_first_not_of(name_characters) != std::string::npos)
+        f.complain("name", "must be 1 to 64 letters, digits, '-', '_' or '.', not beginning with '.'");
     body.surface = f.text("surface");
     if (std::filesystem::path(body.surface).has_extension() && std::filesystem::path(body.surface).is_relative())
         body.surface = (std::filesystem::path(folder) / body.surface).string();
     if (body.surface == "box" || body.surface == "sheet") {
         body.box_m = f.vector("box");
         for (int r = 0; r < 3; ++r)
-            if (!(body.box_m[r] > 0) && !(r == 2 && body.surface == "sheet" && body.box_m[r] == 0))
-                f.complain("box/" + std::to_string(r), "must be > 0 (m)");
+            if (!(r == 2 && body.surface == "sheet" && body.box_m[r] == 0))
+                f.number_of("box/" + std::to_string(r), f.need("box")[static_cast<std::size_t>(r)], length);
         body.cells = read_cells(f, "cells");
+        if (double(body.cells[0]) * body.cells[1] + double(body.cells[1]) * body.cells[2] + double(body.cells[2]) * body.cells[0] > 1e6)
+            f.complain("cells", "makes more than four million triangles");
         if (body.surface == "sheet")
-            body.thickness_m = f.number("thickness", JsonFields::positive());
+            body.thickness_m = f.number("thickness", length);
     } else {
-        body.size_m = f.number("size", JsonFields::positive(), 0);
+        body.size_m = f.number("size", length, 0);
     }
     const int ways = f.has("nodes") + f.has("lattice") + f.has("places");
     if (ways != 1)
@@ -205,14 +213,16 @@ SceneBody read_body(const Json& json, const std::string& file, const std::string
         if (body.surface != "box" && body.surface != "sheet")
             f.complain("lattice", "needs the surface box or sheet");
         body.lattice = read_cells(f, "lattice");
+        if (double(body.lattice[0]) * body.lattice[1] * body.lattice[2] > most_nodes)
+            f.complain("lattice", "makes more than 20,000 simulation nodes");
     } else if (f.has("places")) {
         const Json& places = f.array("places");
-        if (places.empty())
-            f.complain("places", "is empty");
+        if (places.empty() || places.size() > most_nodes)
+            f.complain("places", "must have 1 to 20,000 of them");
         for (std::size_t i = 0; i < places.size(); ++i)
             body.places.push_back(f.vector_of("places/" + std::to_string(i), places[i]));
     } else {
-        body.nodes = f.count("nodes", 1, 100000);
+        body.nodes = f.count("nodes", 1, most_nodes);
     }
     body.seed = f.count("seed", 0, std::size_t(1) << 53, 0);
     body.meshless.density = f.number("density", JsonFields::positive(), 1000);
@@ -248,7 +258,7 @@ Integration read_integration(JsonFields& scene)
     if (method != "implicit" && method != "explicit")
         f.complain("method", "'" + method + "' is unknown; known are implicit, explicit");
     integration.method = method == "explicit" ? Integration::Method::explicit_euler : Integration::Method::implicit_euler;
-    integration.step_s = f.number("step", JsonFields::positive(), integration.step_s);
+    integration.step_s = f.number("step", interval, integration.step_s);
     if (method == "explicit") {
         integration.safety = f.number("safety", {0, 1, true, "a number above 0 and at most 1"}, integration.safety);
     } else {
@@ -269,17 +279,44 @@ std::vector<std::string> effect_names()
     return names;
 }
 
+namespace {
+
+// Keeps hostile nesting off the stack, and says which key stands twice: the parser would take the last one.
+class Strict {
+public:
+    explicit Strict(std::string file) : file_(std::move(file)) {}
+
+    bool operator()(int depth, Json::parse_event_t event, Json& parsed)
+    {
+        if (depth > 32)
+            throw InputError::in_file(file_, "is nested more than 32 deep");
+        if (event == Json::parse_event_t::object_start)
+            keys_.emplace_back();
+        else if (event == Json::parse_event_t::object_end)
+            keys_.pop_back();
+        else if (event == Json::parse_event_t::key && !keys_.back().insert(parsed.get<std::string>()).second)
+            throw InputError::in_file(file_, JsonFields::printable("the key '" + parsed.get<std::string>() + "' stands twice in one object"));
+        return true;
+    }
+
+private:
+    std::string file_;
+    std::vector<std::set<std::string>> keys_;
+};
+
+} // namespace
+
 Scene parse_scene(std::string_view text, const std::string& file, const std::string& folder)
 {
     Json json;
     try {
-        json = Json::parse(text);
+        json = Json::parse(text, Strict(file));
     } catch (const Json::parse_error& error) {
         std::size_t line = 1;
         for (std::size_t i = 0; i + 1 < error.byte && i < text.size(); ++i)
             line += text[i] == '\n';
         throw InputError::at_line(file, line, "is no JSON from here on");
-    } catch (const Json::exception&) {
+    } catch (const Json::out_of_range&) {
         throw InputError::in_file(file, "has a number that no double can hold");
     }
     JsonFields f(json, file, "");
@@ -288,7 +325,7 @@ Scene parse_scene(std::string_view text, const std::string& file, const std::str
     scene.name = f.text("name", std::filesystem::path(file).stem().string());
     scene.about = f.text("about", "");
     scene.duration_s = f.number("duration", JsonFields::not_negative());
-    scene.frame_s = f.number("frame", JsonFields::positive(), 1.0 / 60);
+    scene.frame_s = f.number("frame", interval, 1.0 / 60);
     if (scene.duration_s / scene.frame_s > 1e6)
         f.complain("duration", "makes more than a million frames");
     scene.integration = read_integration(f);
@@ -320,8 +357,8 @@ Scene parse_scene(std::string_view text, const std::string& file, const std::str
             e.complain("effect", "'" + name + "' is unknown; known are " + known);
         }
         effect.what = kind->read(e);
-        if (chosen && !chosen->is_array())
-            e.fail("bodies", "an array of names", *chosen);
+        if (chosen && (!chosen->is_array() || chosen->empty()))
+            e.fail("bodies", "names of bodies", *chosen);
         for (std::size_t b = 0; chosen && b < chosen->size(); ++b) {
             const std::string place = "bodies/" + std::to_string(b);
             if (!(*chosen)[b].is_string())
