@@ -116,6 +116,22 @@ TEST_CASE("checkpoints continue only what they are of")
     bytes[bytes.size() / 2] ^= 4;
     refused("skin --resume " + folder.write("d", bytes).string(), "was changed");
     refused("skin --resume " + state + " --frames " + folder.write("short", "abc").string(), "does not have the");
+    refused("skin --resume " + state, "continues with --frames FILE, binary");
+    refused("skin --resume " + state + " --frames " + frames + ".jsonl", "continues with --frames FILE, binary");
+    REQUIRE(test::cinch("simulate skin --duration 0.1 --checkpoint " + state + "2").status == 0);
+    refused("skin --resume " + state + "2 --frames " + frames, "is of a run without --frames");
+    CHECK(read_frames(frames).bodies[0].frames.size() == 19); // and left alone
+    refused("skin --checkpoint /dev/full", "is no regular file");
+    // A surface that changed beside the scene.
+    const std::string own = R"({"duration": 0.05, "bodies": [{"surface": "m.off", "places": [[0,0,0],[1,0,0],[0,1,0],[0,0,1]]}], "effects": [{"effect": "gravity"}]})";
+    const std::string scene = folder.write("own.json", own).string(), mesh = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
+    folder.write("m.off", mesh);
+    REQUIRE(test::cinch("simulate " + scene + " --checkpoint " + state + "3").status == 0);
+    folder.write("m.off", "OFF\n4 4 0\n0 0 0\n2 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n");
+    refused(scene + " --resume " + state + "3", "is of another scene");
+    refused(folder.write("gone.json", R"({"duration": 1, "bodies": [{"surface": "gone.off", "nodes": 4}], "effects": []})").string(), "gone.json: /bodies/0/surface: ");
+    refused("skin --duration nan", "--duration");
+    refused("skin --duration 1e9", "--duration");
     refused("skin --frames /nonexistent/f", "cannot be written");
     refused("skin --meshes " + state, "is no folder");
     refused("nothing", "no such scene; known are beam, brain-pull");
@@ -135,6 +151,27 @@ TEST_CASE("a step that cannot be solved is reported with time and body, and no f
     CHECK(run.status == 1);
     CHECK(run.err.find("body 'bar' at 0 s: no minimum within 1 Newton iterations") != std::string::npos);
     CHECK(read_frames(folder.path() / "f").bodies[0].frames.size() == 1);
+}
+
+TEST_CASE("positions that leave the numbers end a run, and are not written")
+{
+    TemporaryFolder folder;
+    const std::string body = R"("bodies": [{"surface": "box", "box": [1, 1, 1], "cells": [1, 1, 1], "lattice": [2, 2, 2])";
+    const fs::path flung = folder.write("flung.json", R"({"duration": 10, )" + body + R"(}], "effects": [{"effect": "scripted", "velocity": [1e308, 0, 0]}]})");
+    const std::string frames = (folder.path() / "f").string();
+    const auto run = test::cinch("simulate " + flung.string() + " --frames " + frames);
+    CHECK(run.status == 1);
+    CHECK(run.err.find("body 'body-0' at 1.7") != std::string::npos);
+    const FrameFile written = read_frames(frames);
+    CHECK(written.bodies[0].frames.size() > 100);
+    for (const auto& frame : written.bodies[0].frames)
+        for (const AffineMap& map : frame)
+            REQUIRE(std::isfinite(map.m[0][3]));
+    const fs::path far = folder.write("far.json", R"({"duration": 0.1, )" + body + R"(, "position": [1e39, 0, 0]}], "effects": []})");
+    const auto meshes = test::cinch("simulate " + far.string() + " --meshes " + (folder.path() / "m").string());
+    CHECK(meshes.status == 1);
+    CHECK(meshes.err.find("beyond what a mesh file holds") != std::string::npos);
+    CHECK(fs::is_empty(folder.path() / "m"));
 }
 
 TEST_CASE("meshes are those of the frames")

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <iosfwd>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -56,6 +57,8 @@ public:
     virtual void add_diagonal(const Configuration&, std::vector<Mat3>&) const {}
     /// Adds −∂f/∂v, as add_curvature: N s/m for what dissipates, for the explicit integrator's step.
     virtual void add_damping(const Configuration&, Curvature) const {}
+    /// The longest explicit step, s, that what it remembers allows: for what comes and goes between two looks at the stiffness.
+    virtual double longest_step(const Configuration&) const { return std::numeric_limits<double>::infinity(); }
     /// Called with every configuration that begins a step of length dt_s: for what lags behind.
     virtual void remember(const Configuration&, double dt_s) { (void)dt_s; }
     /// Called with the configuration that ends a step: for what flows. May change the plastic state.

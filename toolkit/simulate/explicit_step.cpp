@@ -91,11 +91,12 @@ void ExplicitStep::advance(double dt_s, double longest_s, StepReport& report)
         const int run = static_cast<int>(std::min<double>(pieces, between_estimates));
         std::ostringstream before;
         b_.save(before);
-        for (int s = 0; s < run; ++s)
-            substep(dt);
+        bool short_enough = true;
+        for (int s = 0; s < run && short_enough; ++s)
+            short_enough = substep(dt);
         const bool finite = whole(b_.x_).allFinite() && whole(b_.v_).allFinite();
         stable = finite ? longest_stable(b_.configure(b_.x_, b_.time_s_)) : 0;
-        if (!(dt <= 0.95 * stable) && dt > 1e-7 * dt_s) { // where they lead, these steps are too long: take them back
+        if ((!(dt <= 0.95 * stable) || !short_enough) && dt > 1e-7 * dt_s) { // where they lead, these steps are too long: take them back
             const double too_long = dt;
             const Field mode = b_.slow_mode_;
             std::istringstream back(before.str());
@@ -116,7 +117,7 @@ void ExplicitStep::advance(double dt_s, double longest_s, StepReport& report)
     }
 }
 
-void ExplicitStep::substep(double dt)
+bool ExplicitStep::substep(double dt)
 {
     const std::size_t n = b_.body_.size();
     const Configuration c = b_.configure(b_.x_, b_.time_s_);
@@ -133,6 +134,7 @@ void ExplicitStep::substep(double dt)
     const double before = b_.time_s_;
     b_.time_s_ += dt;
     b_.finish(before, dt);
+    return std::all_of(b_.effects_.begin(), b_.effects_.end(), [&](const auto& slot) { return dt <= slot.effect->longest_step(c); });
 }
 
 } // namespace cinch

@@ -17,7 +17,7 @@ public:
     double longest_stable(const Configuration& c);
 
 private:
-    void substep(double dt);
+    bool substep(double dt); ///< false: it was too long for what it met
     double greatest_eigenvalue(const Configuration& c, int iterations, bool stiffness);
 
     BodySimulation& b_;

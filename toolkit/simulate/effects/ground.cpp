@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 #include "toolkit/simulate/effects/effects.hpp"
@@ -90,6 +91,30 @@ public:
             for (std::size_t e = 0; e < row.node.size(); ++e)
                 out.block[row.node[e]].diagonal().array() += 4 * row.weight[e] * damping;
         }
+    }
+    /// Friction must not turn a slip around: c Δt ≤ m, m the point's share of the mass of its nodes, a quarter for what acts through J.
+    double longest_step(const Configuration& given) const override
+    {
+        const Configuration c = seen(given);
+        double longest = std::numeric_limits<double>::infinity();
+        std::vector<double> load; // of each node by all points
+        for (std::size_t k = 0; k < before_.size() / 4; ++k) {
+            const double damping = drag(k) * interval_s_;
+            if (damping == 0)
+                continue;
+            if (!c.surface) {
+                longest = std::min(longest, c.body.mass[k] / damping);
+                continue;
+            }
+            load.resize(c.body.size(), 0);
+            const Weights::Row row = c.surface->weights.of(k);
+            for (std::size_t e = 0; e < row.node.size(); ++e)
+                load[row.node[e]] += 4 * row.weight[e] * damping;
+        }
+        for (std::size_t i = 0; i < load.size(); ++i)
+            if (load[i] > 0)
+                longest = std::min(longest, c.body.mass[i] / load[i]);
+        return longest;
     }
     /// Friction: a drag μ N / ‖slip of the last step‖ on the slip of this one, by which it reaches Coulomb's force where things slide
     /// steadily and holds where they rest: below a speed of 1 mm/s.
