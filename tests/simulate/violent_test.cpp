@@ -83,6 +83,24 @@ TEST_CASE("the explicit integrator survives spins that tear the material")
     }
 }
 
+TEST_CASE("the explicit integrator takes steps that the viscosity allows")
+{
+    for (const double viscosity : {0.0, 1e3, 1e5}) {
+        BodySimulation s = block(lattice_body({1, 1, 1}, 4, 4, 4), 1e4);
+        s.add(make_mass_damping(viscosity * 1e-2));
+        if (viscosity > 0)
+            s.add(make_viscosity(viscosity));
+        s.place(moved(s.body(), Vec3(1.2, 0.9, 1).asDiagonal(), Vec3::Zero(), 0, 1), moved(s.body(), Mat3::Zero(), Vec3::Zero(), 0.5, 2));
+        const double start = s.kinetic() + s.potential();
+        for (int frame = 0; frame < 6; ++frame) {
+            const StepReport r = s.advance(1.0 / 60, steps(Integration::Method::explicit_euler, 1.0 / 60));
+            REQUIRE(r.failure.empty());
+            REQUIRE(r.kinetic + r.potential < 1.1 * start);
+        }
+        CHECK((viscosity == 0 || s.kinetic() + s.potential() < 0.7 * start));
+    }
+}
+
 TEST_CASE("implicit steps make no energy, however a body spins, collapses or is arranged")
 {
     struct Case {
