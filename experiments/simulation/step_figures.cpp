@@ -130,7 +130,7 @@ StepFigures measure_steps(double seconds)
         off = std::max(off, row.off);
     const double step = reference.plain_us / reference.step_us, evaluate = out.evaluate_plain_us / out.evaluate_us,
                  evaluate_float = out.evaluate_plain_us / out.evaluate_float_us;
-    out.figures = {{fmt::format("plain Eigen / substep, 509 nodes, {:.0f} neighbours", reference.neighbours), fmt::format("{:.2f}", step), ">= 5", step >= 5},
+    out.figures = {{fmt::format("plain Eigen / substep, {:.0f} neighbours", reference.neighbours), fmt::format("{:.2f}", step), ">= 5", step >= 5},
                    {"difference of the two after 100 steps, m", fmt::format("{:.0e}", off), "<= 1e-12", off <= 1e-12},
                    {"exponent of nodes x neighbours", fmt::format("{:.2f}", out.nodes_slope), "<= 1.1", out.nodes_slope <= 1.1},
                    {"exponent of neighbours at 509 nodes", fmt::format("{:.2f}", out.neighbours_slope), "<= 1.1", out.neighbours_slope <= 1.1},

@@ -85,7 +85,7 @@ TEST_CASE("a run that is interrupted, or killed, and resumed writes the bytes of
         }
         CHECK(meshes == 181);
     }
-    const auto stopped = test::cinch_interrupted("simulate santa-ring-8 --duration 60 --frames " + in("long") + " --checkpoint " + in("long-state"), 3);
+    const auto stopped = test::cinch_interrupted("simulate twist-180 --duration 10000 --frames " + in("long") + " --checkpoint " + in("long-state"), 3);
     CHECK(stopped.status == 130);
     CHECK(stopped.err.find("interrupted at frame") != std::string::npos);
     CHECK(stopped.out.find("elastic") != std::string::npos); // what is done is shown
