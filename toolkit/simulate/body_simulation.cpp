@@ -285,9 +285,7 @@ void BodySimulation::save(std::ostream& out) const
     write_raw<double>(out, v_);
     for (const Mat3& p : plastic_inverse_)
         write_raw<double>(out, {p.data(), 9});
-    const std::size_t mode = slow_mode_.size();
-    write_raw<std::size_t>(out, {&mode, 1});
-    write_raw<double>(out, slow_mode_);
+    write_list(out, slow_mode_);
     for (const Slot& slot : effects_)
         slot.effect->save(out);
 }
@@ -299,10 +297,7 @@ void BodySimulation::restore(std::istream& in)
     read_raw<double>(in, v_);
     for (Mat3& p : plastic_inverse_)
         read_raw<double>(in, {p.data(), 9});
-    std::size_t mode = 0;
-    read_raw<std::size_t>(in, {&mode, 1});
-    slow_mode_.resize(mode);
-    read_raw<double>(in, slow_mode_);
+    read_list(in, slow_mode_);
     for (Slot& slot : effects_)
         slot.effect->restore(in);
 }

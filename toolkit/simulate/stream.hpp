@@ -21,4 +21,19 @@ template <class T> void read_raw(std::istream& in, std::span<T> values)
     in.read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(values.size_bytes()));
 }
 
+/// A list with its length before it. What is read was checked by the checkpoint's own checksum.
+template <class List> void write_list(std::ostream& out, const List& list)
+{
+    const std::size_t count = list.size();
+    write_raw<std::size_t>(out, {&count, 1});
+    write_raw<typename List::value_type>(out, list);
+}
+template <class List> void read_list(std::istream& in, List& list)
+{
+    std::size_t count = 0;
+    read_raw<std::size_t>(in, {&count, 1});
+    list.resize(count);
+    read_raw<typename List::value_type>(in, list);
+}
+
 } // namespace cinch

@@ -139,17 +139,12 @@ public:
     }
     void save(std::ostream& out) const override
     {
-        const std::size_t count = before_.size();
-        write_raw<std::size_t>(out, {&count, 1});
-        write_raw<double>(out, before_);
+        write_list(out, before_);
         write_raw<double>(out, {&interval_s_, 1});
     }
     void restore(std::istream& in) override
     {
-        std::size_t count = 0;
-        read_raw<std::size_t>(in, {&count, 1});
-        before_.resize(count);
-        read_raw<double>(in, before_);
+        read_list(in, before_);
         read_raw<double>(in, {&interval_s_, 1});
     }
 
