@@ -20,7 +20,7 @@ struct Scene {
     {
         const PackedBvh<T> packed = pack<T>(bvh, e.surface, choose_kinds(bvh, e.surface, kind, shape));
         ProjectedMaps<T> maps;
-        std::vector<T> remembered(remember ? packed.bvs.size() * static_cast<std::size_t>(kdop) : 0, std::numeric_limits<T>::quiet_NaN());
+        std::vector<T> remembered(remember ? 2 * packed.bvs.size() * static_cast<std::size_t>(kdop) : 0, std::numeric_limits<T>::quiet_NaN());
         KernelScratch<T> scratch;
         std::vector<double> all;
         for (const auto& frame : e.frames) {

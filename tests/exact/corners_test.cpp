@@ -108,7 +108,7 @@ TEST_CASE("counts equal the listing for n up to 18")
         }
 }
 
-TEST_CASE("hypersimplices have binomially many corners; large ones are counted on their grid")
+TEST_CASE("hypersimplices have binomially many corners, and large ones are counted on their grid")
 {
     auto hypersimplex = [](std::size_t n, double h) { return Space{std::vector<double>(n, 0), std::vector<double>(n, h)}; };
     CHECK(count_corners(hypersimplex(8, 0.25).view()).count == "70");

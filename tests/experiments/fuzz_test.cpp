@@ -71,7 +71,7 @@ TEST_CASE("planted defects are found and shrunk to n <= 4, or prove harmless")
     }
 }
 
-TEST_CASE("shards partition the cases; threads change nothing")
+TEST_CASE("shards partition the cases, and threads change nothing")
 {
     auto failures = [](const std::string& options) {
         std::vector<std::string> all;

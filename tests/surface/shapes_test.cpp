@@ -72,7 +72,7 @@ TEST_CASE("centre_and_scale puts the longest half-extent where asked, without ov
     CHECK(point.vertices[0] == Vec3(0, 0, 0));
 }
 
-TEST_CASE("boxes are closed and face outward; a sheet is open")
+TEST_CASE("boxes are closed and face outward, and a sheet is open")
 {
     const TriangleMesh cuboid = box({2, 3, 4}, {2, 1, 3});
     CHECK(cuboid.vertices.size() == 3 * 2 * 4); // no lattice point lies inside

@@ -41,6 +41,7 @@ class Methods {
 public:
     constexpr Methods(Method method) : bits_(bit(method)) {}
     constexpr Methods operator|(Methods other) const { return Methods(static_cast<std::uint16_t>(bits_ | other.bits_)); }
+    constexpr Methods without(Method method) const { return Methods(static_cast<std::uint16_t>(bits_ & ~bit(method))); }
     constexpr bool contains(Method method) const { return bits_ & bit(method); }
     /// True if no method is in this set that is not in `other`.
     constexpr bool within(Methods other) const { return (bits_ & ~other.bits_) == 0; }

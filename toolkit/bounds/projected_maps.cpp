@@ -87,13 +87,14 @@ void project(std::span<const AffineMap> maps, const RestExtent& rest, int kdop, 
     const std::size_t record = 4 * projected_rows(axes.size());
     out.kdop = kdop;
     out.unbounded = 0;
+    out.vertex_error = 0;
     out.origin = maps.empty() ? Vec3::Zero() : body_origin(maps, rest);
     out.value.assign(maps.size() * record, 0);
     for (std::size_t j = 0; j < maps.size(); ++j) {
         const Row rows[3] = {shifted_row(maps[j].m[0], rest.origin, out.origin[0]), shifted_row(maps[j].m[1], rest.origin, out.origin[1]),
                              shifted_row(maps[j].m[2], rest.origin, out.origin[2])};
         T* const q = out.value.data() + j * record;
-        double error = 0;
+        double error = 0, vertex_error = 0;
         bool bounded = rest.about_origin.maxCoeff() <= static_cast<double>(magnitude_limit<T>); // else rest data may overflow T
         for (std::size_t a = 0; a < axes.size(); ++a) {
             double along[4] = {0, 0, 0, 0}, magnitude[4] = {0, 0, 0, 0}, lost = 0, world = 0;
@@ -123,6 +124,7 @@ void project(std::span<const AffineMap> maps, const RestExtent& rest, int kdop, 
             for (double component : along) // whatever it meets may be 0, which would hide it from `about`
                 bounded &= std::abs(component) <= static_cast<double>(magnitude_limit<T>);
             error = std::max(error, node_error<T>(about, rest.about_origin.sum(), lost) + evaluation_error(rest.influences, world));
+            vertex_error = std::max(vertex_error, succ(4 * lost + evaluation_error(rest.influences, world)));
         }
         T& charge = q[record - 1];
         charge = rounding == Rounding::proven ? rounded_up<T>(succ(error)) : T(0);
@@ -130,6 +132,8 @@ void project(std::span<const AffineMap> maps, const RestExtent& rest, int kdop, 
             std::fill_n(q, record, T(0));
             charge = std::numeric_limits<T>::infinity();
             ++out.unbounded;
+        } else {
+            out.vertex_error = std::max(out.vertex_error, vertex_error);
         }
     }
     out.octet.assign((maps.size() + 7) / 8 * 8 * record, T(0));

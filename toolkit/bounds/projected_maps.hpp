@@ -29,6 +29,8 @@ template <class T> struct ProjectedMaps {
     int kdop = 6;
     Vec3 origin = Vec3::Zero();
     std::size_t unbounded = 0; ///< simulation nodes whose error is +∞
+    double vertex_error = 0;   ///< of the other nodes, the greatest error of an image of a vertex that is not of rounding to and in T: that
+                               ///< of evaluate_vertex, and what shifting to the origins lost
     AlignedVector<T> value;    ///< records
     AlignedVector<T> octet;    ///< the same by eights: of nodes 8i to 8i + 7 the first values, 8 in a row, then the second ones, …
 

@@ -6,6 +6,7 @@
 
 #include "toolkit/bounds/rest_bv.hpp"
 #include "toolkit/deform/surface.hpp"
+#include "toolkit/hierarchy/cluster.hpp"
 
 namespace cinch {
 
@@ -53,6 +54,9 @@ struct Bvh {
 /// Median split along the longest axis of the covariance of the triangles' centroids, down to at most `leaf_triangles` ≥ 1 per
 /// leaf; ties are split by index, so the depth is logarithmic whatever the geometry. Deterministic.
 Bvh build_bvh(const DeformableSurface& surface, std::size_t leaf_triangles);
+
+/// The same split over clusters of triangles, each of which becomes a leaf: fewer and fuller leaves, each a patch of the surface.
+Bvh build_bvh(const DeformableSurface& surface, ClusterSize leaf);
 
 /// The vertices of one BV's triangles, each once, in order of first use.
 std::vector<std::uint32_t> vertices_of(const DeformableSurface& surface, const Bvh& bvh, const Bv& bv);

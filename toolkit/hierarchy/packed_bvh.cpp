@@ -277,15 +277,20 @@ RestExtent rest_extent(const Bvh& bvh, const DeformableSurface& surface, RestSha
     return rest;
 }
 
-template <class T> PackedBvh<T> pack(const Bvh& bvh, const DeformableSurface& surface, std::span<const ChosenKind> kinds)
+template <class T> PackedBvh<T> pack(const Bvh& bvh, const DeformableSurface& surface, std::span<const ChosenKind> kinds, bool leaves)
 {
     PackedBvh<T> out;
     out.rest = rest_extent(bvh, surface, !kinds.empty() && kinds[0].oriented ? RestShape::obb : RestShape::aabb);
     Packer<T> packer(surface, out);
+    auto wanted = [&](std::size_t i) { return leaves || !bvh.bvs[i].is_leaf(); };
+    for (std::size_t i = 0; i < bvh.bvs.size(); ++i) {
+        if (wanted(i))
+            packer.pack(bvh.rest(i), kinds[i].kind, kinds[i].start, kinds[i].oriented ? &bvh.bvs[i].oriented : nullptr);
+        else
+            out.bvs.emplace_back();
+    }
     for (std::size_t i = 0; i < bvh.bvs.size(); ++i)
-        packer.pack(bvh.rest(i), kinds[i].kind, kinds[i].start, kinds[i].oriented ? &bvh.bvs[i].oriented : nullptr);
-    for (std::size_t i = 0; i < bvh.bvs.size(); ++i)
-        if (kinds[i].also) {
+        if (kinds[i].also && wanted(i)) {
             out.bvs[i].also = static_cast<std::uint32_t>(out.bvs.size());
             packer.pack(bvh.rest(i), *kinds[i].also, kinds[i].also_start, nullptr);
         }
@@ -295,7 +300,7 @@ template <class T> PackedBvh<T> pack(const Bvh& bvh, const DeformableSurface& su
     return out;
 }
 
-template PackedBvh<float> pack(const Bvh&, const DeformableSurface&, std::span<const ChosenKind>);
-template PackedBvh<double> pack(const Bvh&, const DeformableSurface&, std::span<const ChosenKind>);
+template PackedBvh<float> pack(const Bvh&, const DeformableSurface&, std::span<const ChosenKind>, bool);
+template PackedBvh<double> pack(const Bvh&, const DeformableSurface&, std::span<const ChosenKind>, bool);
 
 } // namespace cinch

@@ -35,7 +35,8 @@ RestExtent rest_extent(const Bvh& bvh, const DeformableSurface& surface, RestSha
 /// The deformations are random quadratic ones, each node moving as at the mean of the vertices it influences. Deterministic.
 std::vector<ChosenKind> choose_kinds(const Bvh& bvh, const DeformableSurface& surface, Method method, RestShape shape = RestShape::aabb);
 
-/// Rounds everything outward to T. Throws std::length_error for float and a BV of more than 65,536 simulation nodes.
-template <class T> PackedBvh<T> pack(const Bvh& bvh, const DeformableSurface& surface, std::span<const ChosenKind> kinds);
+/// Rounds everything outward to T. Leaves have no data but their place if they are not wanted. Throws std::length_error for float and
+/// a BV of more than 65,536 simulation nodes.
+template <class T> PackedBvh<T> pack(const Bvh& bvh, const DeformableSurface& surface, std::span<const ChosenKind> kinds, bool leaves = true);
 
 } // namespace cinch

@@ -72,8 +72,8 @@ void search(const KernelInput<T>& in, const PackedBv<T>& bv, const T* block, con
     for (std::size_t s = 0; s < 2; ++s)
         for (std::size_t a = 0; a < kAxes; ++a) {
             lambda[s][a] = e.mean[s][a] + bv.start * (e.greatest[s][a] - e.mean[s][a]);
-            if (remembered && std::isfinite(remembered[s * kAxes + a]))
-                lambda[s][a] = remembered[s * kAxes + a];
+            if (remembered && std::isfinite(remembered[2 * (s * kAxes + a)]))
+                lambda[s][a] = remembered[2 * (s * kAxes + a)];
         }
     Dual<T, kAxes> d;
     if (in.passes == 1 && !remembered) {
@@ -89,11 +89,12 @@ void search(const KernelInput<T>& in, const PackedBv<T>& bv, const T* block, con
                 const DualParts<T> parts{d.lower[s][a], d.upper[s][a], d.mass[s][a]};
                 if (pass == 0)
                     tangents[s][a].emplace(lambda[s][a], parts, bv.sum_l, bv.sum_r, e.mean[s][a]);
-                lambda[s][a] = tangents[s][a]->next(lambda[s][a], parts, bv.sum_l);
+                const T here = lambda[s][a];
+                lambda[s][a] = tangents[s][a]->next(here, parts, bv.sum_l);
+                if (remembered && pass + 1 == in.passes)
+                    remember(here, lambda[s][a] - here, 1 - bv.sum_l - parts.mass, remembered + 2 * (s * kAxes + a));
             }
     }
-    if (remembered)
-        std::copy_n(&lambda[0][0], 2 * kAxes, remembered);
 }
 
 // The whole method: λ where the kind says, D there, and every such value intersected with the greatest b.
@@ -142,19 +143,25 @@ void bound_by_duality(const KernelInput<T>& in, const PackedBv<T>& bv, T* rememb
         add_rest_support<T, kAxes>(bv, point, out.reference, out.reference, in.rounding, out.value);
 }
 
+// What the errors of the BV's nodes add.
+template <class T, std::size_t kAxes> double widening(const KernelInput<T>& in, const PackedBv<T>& bv, const Bound<T, kAxes>& bound)
+{
+    const double error = static_cast<double>(bound.error);
+    return in.rounding == Rounding::proven ? succ(error * static_cast<double>(bv.error_factor)) : error;
+}
+
 // Back from T about the body's origin to supports in the world, with the errors of the BV's nodes on top.
 template <class T, std::size_t kAxes>
 void finish(const KernelInput<T>& in, const PackedBv<T>& bv, const Bound<T, kAxes>& bound, double* supports)
 {
     const bool proven = in.rounding == Rounding::proven;
-    const double error = static_cast<double>(bound.error);
-    const double widening = proven ? succ(error * static_cast<double>(bv.error_factor)) : error;
+    const double wider = widening<T, kAxes>(in, bv, bound);
     const Vec3& origin = in.maps->origin;
     const bool at_home = origin[0] == 0 && origin[1] == 0 && origin[2] == 0;
     const auto axes = axes_of(in.maps->kdop);
     for (std::size_t a = 0; a < kAxes; ++a)
         for (std::size_t s = 0; s < 2; ++s) {
-            double sum = static_cast<double>(bound.value[s][a]) + widening;
+            double sum = static_cast<double>(bound.value[s][a]) + wider;
             sum = proven ? succ(sum) : sum;
             for (std::size_t r = 0; r < 3 && !at_home; ++r)
                 if (axes[a][r] != 0) {
@@ -165,8 +172,20 @@ void finish(const KernelInput<T>& in, const PackedBv<T>& bv, const Bound<T, kAxe
         }
 }
 
+// The same as floats that stay relative to the body's origin: fl(x) is at least x(1 − u), and succ goes past x.
 template <class T, std::size_t kAxes>
-void bound_one(const KernelInput<T>& in, std::size_t i, KernelScratch<T>& scratch, Bound<T, kAxes>& bound, double* supports)
+void finish(const KernelInput<T>& in, const PackedBv<T>& bv, const Bound<T, kAxes>& bound, std::size_t side, float* dop)
+{
+    const double wider = widening<T, kAxes>(in, bv, bound);
+    for (std::size_t a = 0; a < kAxes; ++a)
+        for (std::size_t s = 0; s < 2; ++s) {
+            const float support = succ(static_cast<float>(succ(static_cast<double>(bound.value[s][a]) + wider)));
+            dop[s * side + a] = support < infinity_of<float> ? support : infinity_of<float>;
+        }
+}
+
+template <class T, std::size_t kAxes>
+void bound_one(const KernelInput<T>& in, std::size_t i, KernelScratch<T>& scratch, Bound<T, kAxes>& bound)
 {
     const PackedBv<T>& bv = in.bvs[i];
     const std::size_t lanes = kAxes * block_lanes * blocks_of(bv.count);
@@ -179,9 +198,8 @@ void bound_one(const KernelInput<T>& in, std::size_t i, KernelScratch<T>& scratc
         linear<T, kAxes>(bv, *in.maps, in.node.data() + bv.first_node, point, point + 3 * block_lanes * blocks_of(bv.points), in.rounding,
                          scratch.transposed.data(), bound.reference, bound.value, bound.error);
     } else {
-        bound_by_duality<T, kAxes>(in, bv, in.remembered ? in.remembered + i * 2 * kAxes : nullptr, scratch, bound);
+        bound_by_duality<T, kAxes>(in, bv, in.remembered ? in.remembered + i * 4 * kAxes : nullptr, scratch, bound);
     }
-    finish<T, kAxes>(in, bv, bound, supports);
 }
 
 template <class T, std::size_t kAxes>
@@ -190,7 +208,8 @@ void bound_range(const KernelInput<T>& in, std::size_t first, std::size_t last, 
     for (std::size_t i = first; i < last; ++i, supports += 2 * kAxes) {
         const PackedBv<T>& bv = in.bvs[i];
         Bound<T, kAxes> bound;
-        bound_one<T, kAxes>(in, i, scratch, bound, supports);
+        bound_one<T, kAxes>(in, i, scratch, bound);
+        finish<T, kAxes>(in, bv, bound, supports);
         if (trace) {
             *trace = {};
             for (std::size_t a = 0; a < kAxes; ++a) {
@@ -203,9 +222,30 @@ void bound_range(const KernelInput<T>& in, std::size_t first, std::size_t last, 
         }
         if (bv.also) {
             double other[2 * kAxes];
-            bound_one<T, kAxes>(in, bv.also, scratch, bound, other);
+            bound_one<T, kAxes>(in, bv.also, scratch, bound);
+            finish<T, kAxes>(in, in.bvs[bv.also], bound, other);
             for (std::size_t d = 0; d < 2 * kAxes; ++d)
                 supports[d] = std::min(supports[d], other[d]);
+        }
+    }
+}
+
+template <class T, std::size_t kAxes>
+void bound_list(const KernelInput<T>& in, std::span<const std::uint32_t> list, KernelScratch<T>& scratch, std::size_t side, float* dops)
+{
+    for (const std::uint32_t i : list) {
+        const PackedBv<T>& bv = in.bvs[i];
+        float* const dop = dops + std::size_t{i} * 2 * side;
+        Bound<T, kAxes> bound;
+        bound_one<T, kAxes>(in, i, scratch, bound);
+        finish<T, kAxes>(in, bv, bound, side, dop);
+        if (bv.also) {
+            float other[2 * kAxes];
+            bound_one<T, kAxes>(in, bv.also, scratch, bound);
+            finish<T, kAxes>(in, in.bvs[bv.also], bound, kAxes, other);
+            for (std::size_t s = 0; s < 2; ++s)
+                for (std::size_t a = 0; a < kAxes; ++a)
+                    dop[s * side + a] = std::min(dop[s * side + a], other[s * kAxes + a]);
         }
     }
 }
@@ -221,6 +261,17 @@ void bound_any(const KernelInput<T>& in, std::size_t first, std::size_t last, Ke
     }
 }
 
+template <class T>
+void bound_any_list(const KernelInput<T>& in, std::span<const std::uint32_t> list, KernelScratch<T>& scratch, std::size_t side, float* dops)
+{
+    switch (in.maps->kdop) {
+    case 6: return bound_list<T, 3>(in, list, scratch, side, dops);
+    case 14: return bound_list<T, 7>(in, list, scratch, side, dops);
+    case 18: return bound_list<T, 9>(in, list, scratch, side, dops);
+    default: return bound_list<T, 13>(in, list, scratch, side, dops);
+    }
+}
+
 void bound_float(const KernelInput<float>& in, std::size_t first, std::size_t last, KernelScratch<float>& scratch, double* supports, KernelTrace<float>* trace)
 {
     bound_any<float>(in, first, last, scratch, supports, trace);
@@ -231,6 +282,16 @@ void bound_double(const KernelInput<double>& in, std::size_t first, std::size_t 
     bound_any<double>(in, first, last, scratch, supports, trace);
 }
 
+void list_float(const KernelInput<float>& in, std::span<const std::uint32_t> list, KernelScratch<float>& scratch, std::size_t side, float* dops)
+{
+    bound_any_list<float>(in, list, scratch, side, dops);
+}
+
+void list_double(const KernelInput<double>& in, std::span<const std::uint32_t> list, KernelScratch<double>& scratch, std::size_t side, float* dops)
+{
+    bound_any_list<double>(in, list, scratch, side, dops);
+}
+
 } // namespace cinch::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -239,6 +300,8 @@ namespace cinch {
 
 HWY_EXPORT(bound_float);
 HWY_EXPORT(bound_double);
+HWY_EXPORT(list_float);
+HWY_EXPORT(list_double);
 
 template <>
 void bound_packed(const KernelInput<float>& input, std::size_t first, std::size_t last, KernelScratch<float>& scratch, std::span<double> supports, KernelTrace<float>* trace)
@@ -250,6 +313,18 @@ template <>
 void bound_packed(const KernelInput<double>& input, std::size_t first, std::size_t last, KernelScratch<double>& scratch, std::span<double> supports, KernelTrace<double>* trace)
 {
     HWY_DYNAMIC_DISPATCH(bound_double)(input, first, last, scratch, supports.data(), trace);
+}
+
+template <>
+void bound_packed(const KernelInput<float>& input, std::span<const std::uint32_t> list, KernelScratch<float>& scratch, std::size_t side, float* dops)
+{
+    HWY_DYNAMIC_DISPATCH(list_float)(input, list, scratch, side, dops);
+}
+
+template <>
+void bound_packed(const KernelInput<double>& input, std::span<const std::uint32_t> list, KernelScratch<double>& scratch, std::size_t side, float* dops)
+{
+    HWY_DYNAMIC_DISPATCH(list_double)(input, list, scratch, side, dops);
 }
 
 std::vector<std::string> kernel_targets()

@@ -22,7 +22,7 @@ template <class T> struct KernelInput {
     const ProjectedMaps<T>* maps;
     Rounding rounding = Rounding::proven;
     int passes = 1;      ///< evaluations of D for local and support; 0 leaves them at the greatest b
-    T* remembered = nullptr; ///< k λ per entry of bvs, NaN at first: where λ begins instead, and the next better λ; or null
+    T* remembered = nullptr; ///< k pairs per entry of bvs, NaN at first: where λ begins instead, and its step (choose_lambda.hpp); or null
 };
 
 /// Reused from call to call, so that bounding allocates nothing once warm.
@@ -43,6 +43,11 @@ template <class T> struct KernelTrace {
 template <class T>
 void bound_packed(const KernelInput<T>& input, std::size_t first, std::size_t last, KernelScratch<T>& scratch, std::span<double> supports,
                   KernelTrace<T>* trace = nullptr);
+
+/// Bounds the BVs listed, writing to each the k supports at dops + bv·2·side, `side` floats apart along and against the axes: floats
+/// relative to maps->origin, rounded up. Whatever is not finite gives +∞.
+template <class T>
+void bound_packed(const KernelInput<T>& input, std::span<const std::uint32_t> list, KernelScratch<T>& scratch, std::size_t side, float* dops);
 
 /// The instruction sets that this machine can run, best first, and the one in use.
 std::vector<std::string> kernel_targets();

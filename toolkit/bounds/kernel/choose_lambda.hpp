@@ -47,4 +47,18 @@ private:
     Tangent falling_, rising_;
 };
 
+/// The next frame's λ and step, λ having slope `slope` of D in this one. Steps go downhill, longer while the direction stays, shorter
+/// once it turns: no value of D is kept, which another frame may have changed. `first` is the step to begin with.
+template <class T> void remember(T lambda, T first, T slope, T* state)
+{
+    const bool known = std::isfinite(state[0]) && std::isfinite(state[1]);
+    T step = known ? std::abs(state[1]) * ((slope < 0) == (state[1] > 0) ? T(1.25) : T(0.4)) : std::abs(first);
+    if (!(slope < 0))
+        step = -step;
+    if (std::isfinite(lambda + step)) {
+        state[0] = lambda + step;
+        state[1] = step;
+    }
+}
+
 } // namespace cinch
