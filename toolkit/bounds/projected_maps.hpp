@@ -32,13 +32,16 @@ template <class T> struct ProjectedMaps {
     double vertex_error = 0;   ///< of the other nodes, the greatest error of an image of a vertex that is not of rounding to and in T: that
                                ///< of evaluate_vertex, and what shifting to the origins lost
     AlignedVector<T> value;    ///< records
-    AlignedVector<T> octet;    ///< the same by eights: of nodes 8i to 8i + 7 the first values, 8 in a row, then the second ones, …
+    AlignedVector<T> octet;    ///< the same by eights: of nodes 8i to 8i + 7 the first values, 8 in a row, then the second ones, …; or empty
 
     const T* of(std::uint32_t node) const { return value.data() + node * 4 * projected_rows(static_cast<std::size_t>(kdop / 2)); }
 };
 
+/// Octets speed up BVs that most simulation nodes influence, and change no result.
+enum class Octets : std::uint8_t { wanted, left_out };
+
 /// `out` keeps its memory. With Rounding::plain errors are 0 (or +∞).
 template <class T>
-void project(std::span<const AffineMap> maps, const RestExtent& rest, int kdop, Rounding rounding, ProjectedMaps<T>& out);
+void project(std::span<const AffineMap> maps, const RestExtent& rest, int kdop, Rounding rounding, ProjectedMaps<T>& out, Octets octets = Octets::wanted);
 
 } // namespace cinch

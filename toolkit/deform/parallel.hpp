@@ -11,6 +11,11 @@ namespace cinch {
 /// otherwise run tasks, on the calling thread too, in the environment in which its arena was created long ago.
 template <class Body> void parallel_blocks(std::size_t count, std::size_t grain, const Body& body)
 {
+    if (count <= grain) {
+        if (count > 0)
+            body(std::size_t{0}, count);
+        return;
+    }
     tbb::task_group_context context(tbb::task_group_context::isolated,
                                     tbb::task_group_context::default_traits | tbb::task_group_context::fp_settings);
     tbb::parallel_for(

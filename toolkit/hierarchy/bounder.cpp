@@ -53,7 +53,7 @@ struct Bounder::Parts {
     const DeformableSurface& surface;
     RefitOptions options;
     RestExtent rest;
-    std::size_t bvs;
+    Octets octets;
     ProjectedMaps<float> single_maps;
     ProjectedMaps<double> double_maps;
     KernelParts<float> single;
@@ -93,7 +93,7 @@ struct Bounder::Parts {
 };
 
 Bounder::Bounder(const Bvh& bvh, const DeformableSurface& surface, const RefitOptions& options, Leaves leaves)
-    : parts_(new Parts{bvh, surface, options, rest_extent(bvh, surface, options.rest_shape), bvh.bvs.size(), {}, {}, {}, {}, {}, {}, {}})
+    : parts_(new Parts{bvh, surface, options, rest_extent(bvh, surface, options.rest_shape), leaves == Leaves::included ? Octets::wanted : Octets::left_out, {}, {}, {}, {}, {}, {}, {}})
 {
     if (!is_kdop(options.kdop))
         throw std::invalid_argument("refit: k must be 6, 14, 18 or 26");
@@ -133,10 +133,10 @@ std::size_t Bounder::begin(std::span<const AffineMap> maps)
         throw std::invalid_argument("refit: one transform per simulation node is needed");
     require_default_arithmetic();
     p.maps = maps;
-    project(maps, p.rest, p.options.kdop, p.options.rounding, p.single_maps);
+    project(maps, p.rest, p.options.kdop, p.options.rounding, p.single_maps, p.octets);
     if (p.twice.empty())
         return p.single_maps.unbounded;
-    project(maps, p.rest, p.options.kdop, p.options.rounding, p.double_maps);
+    project(maps, p.rest, p.options.kdop, p.options.rounding, p.double_maps, p.octets);
     return p.double_maps.unbounded;
 }
 

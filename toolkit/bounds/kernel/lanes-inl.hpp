@@ -187,7 +187,7 @@ template <class T, std::size_t kAxes> struct OctetOfMaps {
 template <std::size_t kAxes, class T, class F> HWY_INLINE void with_maps(const ProjectedMaps<T>& maps, const std::uint32_t* node, F&& f)
 {
     // Eight different nodes (a repeated one would be the last two) in ascending order, so a difference of 7 leaves no gaps.
-    if (node[0] % block_lanes == 0 && node[block_lanes - 1] - node[0] == block_lanes - 1 && node[block_lanes - 2] != node[block_lanes - 1])
+    if (!maps.octet.empty() && node[0] % block_lanes == 0 && node[block_lanes - 1] - node[0] == block_lanes - 1 && node[block_lanes - 2] != node[block_lanes - 1])
         return f(OctetOfMaps<T, kAxes>{maps.octet.data() + node[0] * (4 * projected_rows(kAxes))});
     ScatteredMaps<T, kAxes> scattered;
     for (std::size_t i = 0; i < block_lanes; ++i)

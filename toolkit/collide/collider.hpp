@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "toolkit/collide/kernel/box_kernel.hpp"
+#include "toolkit/collide/kernel/cluster_kernel.hpp"
+#include "toolkit/hierarchy/lazy_refit.hpp"
+
+namespace cinch {
+
+/// Two triangles that intersect: indices of bodies, body_a < body_b, and of triangles of their meshes.
+struct TrianglePair {
+    std::uint32_t body_a, triangle_a, body_b, triangle_b;
+    auto operator<=>(const TrianglePair&) const = default;
+};
+
+/// What is asked of a query.
+enum class Query : std::uint8_t {
+    pairs,  ///< all intersecting pairs of triangles
+    any,    ///< whether there is one; stops at the first it finds
+    leaves, ///< pairs of leaves whose k-DOPs overlap, each given by its first triangle: the least effort, no triangle is tested
+};
+
+/// What a query did.
+struct QueryCounts {
+    std::size_t body_pairs = 0; ///< whose roots overlap
+    std::size_t box_tests = 0, leaf_pairs = 0;
+    std::uint64_t triangle_tests = 0; ///< pairs of triangles whose boxes overlap
+    std::uint64_t in_double = 0;      ///< of these, decided by the vertices of evaluate_vertex and filtered signs;
+    std::uint64_t in_exact = 0;       ///< by exact arithmetic; all others by floats with proven margins
+    LazyCounts updates;               ///< of all bodies, up to here in this frame
+};
+
+/// Finds the intersecting triangles of several deforming bodies, frame after frame: a sweep over the roots, then all pairs of trees level by
+/// level, each level's BVs brought up to date together, then the leaves. A pair is one if the closed triangles whose vertices are those
+/// of evaluate_vertex have a point in common, exactly. The list and its order are the same for every method, k, history, update and
+/// number of threads; the order is that of the trees.
+class Collider {
+public:
+    /// All bodies have the same options.
+    explicit Collider(const LazyOptions& options) : options_(options) {}
+
+    /// Surfaces must stay as they are, and alive; BVHs too where LazyRefit says so, which see for what is thrown.
+    void add(const Bvh& bvh, const DeformableSurface& surface);
+
+    /// Begins a frame: one list of transforms per body, which must stay alive until after the query. Throws std::invalid_argument for
+    /// other numbers of them, std::runtime_error for a changed floating-point environment.
+    void update(std::span<const std::span<const AffineMap>> frames);
+
+    /// Queries the frame. `sink` gets the pairs in order, piece by piece, and says whether to go on. True if there are any.
+    using Sink = std::function<bool(std::span<const TrianglePair>)>;
+    bool find(Query query, const Sink& sink);
+    std::vector<TrianglePair> pairs();
+    bool any();
+
+    /// Bodies of which nothing is known in this frame (LazyRefit::known): to be taken as overlapping everything. They are in no pair.
+    const std::vector<std::uint32_t>& unknown() const { return unknown_; }
+    const QueryCounts& counts() const { return counts_; } ///< of the frame so far
+    std::span<const LazyRefit> trees() const { return trees_; }
+    std::size_t bytes() const; ///< of everything but the surfaces
+
+private:
+    // Two bodies whose roots overlap.
+    struct BodyPair {
+        std::uint32_t a = 0, b = 0;
+        AlignedVector<float> shift;   ///< see BoxInput
+        ClusterInput clusters;
+        std::size_t begin = 0, end = 0; ///< of its BV pairs in level_
+        std::vector<BvPair> leaves;   ///< that overlap, in order
+        std::size_t tested = 0;       ///< of these
+    };
+    // Some of the work of a body pair, for one task.
+    struct Piece {
+        std::size_t pair, begin, end;
+        std::vector<TriangleHit> hits;
+        std::vector<ClusterPair> clusters;
+        std::vector<TrianglePair> found;
+        QueryCounts counts;
+    };
+
+    void sweep();
+    void set_shift(BodyPair& pair) const;
+    void descend(); ///< by one level
+    void test_level();
+    bool test_leaves(Query query, const Sink& sink);
+    void test_piece(Piece& piece) const;
+    bool list_leaves(const Sink& sink) const;
+
+    LazyOptions options_;
+    std::vector<const DeformableSurface*> surfaces_;
+    std::vector<LazyRefit> trees_;
+    std::vector<std::uint32_t> unknown_;
+    QueryCounts counts_;
+
+    std::vector<BodyPair> pairs_; ///< the first active_ are this frame's, by a, then b
+    std::size_t active_ = 0;
+    std::vector<BvPair> level_, overlapping_;
+    std::vector<BoxTest> tests_;
+    std::vector<Piece> pieces_;
+    std::vector<std::size_t> found_in_;
+};
+
+} // namespace cinch

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+// No #pragma once: compiled anew for every target.
+#if defined(CINCH_WIDE_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef CINCH_WIDE_INL
+#undef CINCH_WIDE_INL
+#else
+#define CINCH_WIDE_INL
+#endif
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace cinch::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// L floats, one per vertex or triangle of a leaf, as however many vectors the target needs. The same lane by lane everywhere.
+template <std::size_t L> struct Wide {
+    using D = hn::CappedTag<float, L>;
+    using V = hn::Vec<D>;
+    static constexpr std::size_t width = hn::MaxLanes(D()), vectors = L / width;
+
+    V v[vectors];
+
+    static HWY_INLINE Wide load(const float* p) // aligned
+    {
+        Wide x;
+        for (std::size_t i = 0; i < vectors; ++i)
+            x.v[i] = hn::Load(D(), p + i * width);
+        return x;
+    }
+    static HWY_INLINE Wide all(float value)
+    {
+        Wide x;
+        for (std::size_t i = 0; i < vectors; ++i)
+            x.v[i] = hn::Set(D(), value);
+        return x;
+    }
+    HWY_INLINE void store(float* p) const // aligned
+    {
+        for (std::size_t i = 0; i < vectors; ++i)
+            hn::Store(v[i], D(), p + i * width);
+    }
+};
+
+template <std::size_t L, class F> HWY_INLINE Wide<L> each(const Wide<L>& a, F&& f)
+{
+    Wide<L> x;
+    for (std::size_t i = 0; i < Wide<L>::vectors; ++i)
+        x.v[i] = f(a.v[i]);
+    return x;
+}
+template <std::size_t L, class F> HWY_INLINE Wide<L> each(const Wide<L>& a, const Wide<L>& b, F&& f)
+{
+    Wide<L> x;
+    for (std::size_t i = 0; i < Wide<L>::vectors; ++i)
+        x.v[i] = f(a.v[i], b.v[i]);
+    return x;
+}
+template <std::size_t L> HWY_INLINE Wide<L> operator+(const Wide<L>& a, const Wide<L>& b) { return each(a, b, [](auto x, auto y) { return hn::Add(x, y); }); }
+template <std::size_t L> HWY_INLINE Wide<L> operator-(const Wide<L>& a, const Wide<L>& b) { return each(a, b, [](auto x, auto y) { return hn::Sub(x, y); }); }
+template <std::size_t L> HWY_INLINE Wide<L> operator*(const Wide<L>& a, const Wide<L>& b) { return each(a, b, [](auto x, auto y) { return hn::Mul(x, y); }); }
+template <std::size_t L> HWY_INLINE Wide<L> magnitude(const Wide<L>& a) { return each(a, [](auto x) { return hn::Abs(x); }); }
+template <std::size_t L> HWY_INLINE Wide<L> root(const Wide<L>& a) { return each(a, [](auto x) { return hn::Sqrt(x); }); }
+template <std::size_t L> HWY_INLINE Wide<L> greater(const Wide<L>& a, const Wide<L>& b) { return each(a, b, [](auto x, auto y) { return hn::Max(x, y); }); }
+template <std::size_t L> HWY_INLINE Wide<L> less(const Wide<L>& a, const Wide<L>& b) { return each(a, b, [](auto x, auto y) { return hn::Min(x, y); }); }
+
+/// a·b + c, rounded once: part of the definition of every result.
+template <std::size_t L> HWY_INLINE Wide<L> fma(const Wide<L>& a, const Wide<L>& b, const Wide<L>& c)
+{
+    Wide<L> x;
+    for (std::size_t i = 0; i < Wide<L>::vectors; ++i)
+#if HWY_NATIVE_FMA
+        x.v[i] = hn::MulAdd(a.v[i], b.v[i], c.v[i]);
+#else // the emulation would round twice
+        x.v[i] = hn::Set(typename Wide<L>::D(), std::fma(hn::GetLane(a.v[i]), hn::GetLane(b.v[i]), hn::GetLane(c.v[i])));
+    static_assert(Wide<L>::width == 1);
+#endif
+    return x;
+}
+/// a·b − c, rounded once.
+template <std::size_t L> HWY_INLINE Wide<L> fms(const Wide<L>& a, const Wide<L>& b, const Wide<L>& c)
+{
+    Wide<L> x;
+    for (std::size_t i = 0; i < Wide<L>::vectors; ++i)
+#if HWY_NATIVE_FMA
+        x.v[i] = hn::MulSub(a.v[i], b.v[i], c.v[i]);
+#else
+        x.v[i] = hn::Set(typename Wide<L>::D(), std::fma(hn::GetLane(a.v[i]), hn::GetLane(b.v[i]), -hn::GetLane(c.v[i])));
+#endif
+    return x;
+}
+
+/// Bit i: whether a > b in lane i; false for NaN.
+template <std::size_t L> HWY_INLINE std::uint32_t bits_where_greater(const Wide<L>& a, const Wide<L>& b)
+{
+    std::uint32_t bits = 0;
+    for (std::size_t i = 0; i < Wide<L>::vectors; ++i) {
+        const auto mask = hn::Gt(a.v[i], b.v[i]);
+        if constexpr (Wide<L>::width == 1) {
+            bits |= static_cast<std::uint32_t>(!hn::AllFalse(typename Wide<L>::D(), mask)) << i;
+        } else {
+            std::uint8_t bytes[8] = {};
+            hn::StoreMaskBits(typename Wide<L>::D(), mask, bytes);
+            bits |= (std::uint32_t{bytes[0]} | std::uint32_t{bytes[1]} << 8) << (i * Wide<L>::width);
+        }
+    }
+    return bits;
+}
+
+/// Of all lanes; NaN hides.
+template <std::size_t L> HWY_INLINE float greatest(const Wide<L>& a)
+{
+    auto most = a.v[0];
+    for (std::size_t i = 1; i < Wide<L>::vectors; ++i)
+        most = hn::Max(most, a.v[i]);
+    return hn::GetLane(hn::MaxOfLanes(typename Wide<L>::D(), most));
+}
+
+} // namespace cinch::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

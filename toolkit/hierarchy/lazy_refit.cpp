@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "toolkit/hierarchy/lazy_refit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "toolkit/deform/parallel.hpp"
+
+namespace cinch {
+namespace {
+
+constexpr float last_stamp = 0x1p24f; // floats count by ones up to here
+
+RefitOptions refit_options(const LazyOptions& o) { return {o.methods, o.kdop, Rounding::proven, o.precision}; }
+
+bool is_known(const AffineMap& map, const Vec3& absolute)
+{
+    for (const auto& row : map.m) {
+        const double most = ((std::abs(row[0]) * absolute[0] + std::abs(row[1]) * absolute[1]) + std::abs(row[2]) * absolute[2]) + std::abs(row[3]);
+        if (!(most + std::abs(row[0]) + std::abs(row[1]) + std::abs(row[2]) < 0x1p1020)) // room for the sum over the nodes; false for NaN
+            return false;
+    }
+    return true;
+}
+
+} // namespace
+
+LazyRefit::LazyRefit(const Bvh& bvh, const DeformableSurface& surface, const LazyOptions& options)
+    : surface_(surface), options_(options), bounder_(bvh, surface, refit_options(options), Bounder::Leaves::left_out),
+      leaves_(pack_leaves(bvh, surface, bounder_.rest().origin)), triangle_(bvh.triangle)
+{
+    links_.resize(bvh.bvs.size());
+    std::uint32_t leaf = 0;
+    for (std::size_t i = 0; i < links_.size(); ++i) {
+        const Bv& bv = bvh.bvs[i];
+        const auto size = static_cast<float>(std::min(bv.box.half.stableNorm(), 1e38));
+        links_[i] = bv.is_leaf() ? Link{leaf++, -1 - size, 0} : Link{bv.first_child, size, 0};
+    }
+    slot_of_.assign(leaves_.leaves.size(), no_slot);
+    dops_.assign(links_.size() * dop_floats(options.kdop), 0.0f);
+    std::vector<bool> has_weight(surface.weights.node_count, false);
+    for (const std::uint32_t j : surface.weights.node)
+        has_weight[j] = true;
+    for (std::uint32_t j = 0; j < surface.weights.node_count; ++j)
+        if (has_weight[j])
+            influencing_.push_back(j);
+}
+
+std::size_t LazyRefit::bytes() const
+{
+    auto size = [](const auto& all) { return all.capacity() * sizeof(all[0]); };
+    return bounder_.bytes() + leaves_.bytes() + size(links_) + size(triangle_) + size(influencing_) + size(dops_) + size(slots_) + size(slot_of_) + size(expanded_) +
+           size(before_) + size(wanted_) + size(jobs_) + size(wanted_leaves_);
+}
+
+void LazyRefit::begin(std::span<const AffineMap> maps)
+{
+    maps_ = maps;
+    const std::size_t unbounded = bounder_.begin(maps);
+    known_ = unbounded == 0 || std::all_of(influencing_.begin(), influencing_.end(), [&](std::uint32_t j) { return is_known(maps[j], bounder_.rest().absolute); });
+    counts_ = {};
+    slots_used_ = 0;
+    std::swap(before_, expanded_);
+    expanded_.clear();
+    ++frame_;
+    stamp_ += 1;
+    if (stamp_ == last_stamp) {
+        stamp_ = 1;
+        for (std::uint32_t bv = 0; bv < links_.size(); ++bv)
+            dop(bv)[dop_side(options_.kdop) - 1] = 0;
+    }
+    full_ = false;
+    if (links_.empty() || !known_)
+        return;
+    std::size_t touched = 0; // leaves that the last query looked at
+    for (const std::uint32_t bv : before_)
+        for (std::uint32_t c = links_[bv].child; c < links_[bv].child + 2; ++c)
+            touched += links_[c].is_leaf();
+    full_ = options_.update == Update::full || (options_.update == Update::automatic && 2 * touched > leaves_.leaves.size());
+    if (full_)
+        return refit_all();
+    if (before_.empty())
+        note(0);
+    for (const std::uint32_t bv : before_)
+        for (std::uint32_t c = links_[bv].child; c < links_[bv].child + 2; ++c)
+            if (!was_expanded(c))
+                note(c);
+    supply();
+    std::for_each(before_.rbegin(), before_.rend(), [&](std::uint32_t bv) { merge(bv); }); // children before parents
+}
+
+void LazyRefit::refit_all()
+{
+    for (std::uint32_t bv = 0; bv < links_.size(); ++bv)
+        if (links_[bv].is_leaf())
+            note(bv);
+    supply();
+    for (std::uint32_t bv = static_cast<std::uint32_t>(links_.size()); bv-- > 0;)
+        if (!links_[bv].is_leaf())
+            merge(bv);
+}
+
+void LazyRefit::merge(std::uint32_t bv)
+{
+    const std::size_t floats = dop_floats(options_.kdop);
+    float* const own = dop(bv);
+    const float* const left = dop(links_[bv].child);
+    const float* const right = left + floats;
+    for (std::size_t i = 0; i < floats; ++i)
+        own[i] = std::max(left[i], right[i]); // of the children's stamps too, which are this frame's
+    ++counts_.merged;
+}
+
+void LazyRefit::note(std::uint32_t bv)
+{
+    stamp(bv);
+    if (links_[bv].is_leaf()) {
+        slot_of_[links_[bv].child] = static_cast<std::uint32_t>(slots_used_);
+        wanted_leaves_.emplace_back(bv, static_cast<std::uint32_t>(slots_used_++));
+    } else {
+        wanted_.push_back(bv);
+    }
+}
+
+void LazyRefit::expand(std::uint32_t bv)
+{
+    Link& link = links_[bv];
+    if (link.expanded == frame_)
+        return;
+    link.expanded = frame_;
+    expanded_.push_back(bv);
+    for (std::uint32_t c = link.child; c < link.child + 2; ++c)
+        if (!current(c))
+            note(c);
+}
+
+void LazyRefit::supply()
+{
+    if (!wanted_.empty()) {
+        parallel_blocks(wanted_.size(), 64, [&](std::size_t first, std::size_t last) { bounder_.bound(std::span(wanted_).subspan(first, last - first), dops_.data()); });
+        counts_.bounds += wanted_.size();
+        wanted_.clear();
+    }
+    if (wanted_leaves_.empty())
+        return;
+    const std::size_t slot_floats = leaf_slot_floats(leaves_.lanes);
+    if (slots_.size() < slots_used_ * slot_floats)
+        slots_.resize(std::min(std::max(2 * slots_.size(), slots_used_ * slot_floats), leaves_.leaves.size() * slot_floats));
+    jobs_.clear();
+    for (const auto& [bv, slot] : wanted_leaves_) {
+        jobs_.push_back({links_[bv].child, slots_.data() + slot * slot_floats, dop(bv)});
+        counts_.vertices += leaves_.leaves[links_[bv].child].vertices;
+    }
+    const LeafInput input{leaves_.lanes, leaves_.leaves, leaves_.value.data(), bounder_.maps().value.data(), 4 * projected_rows(static_cast<std::size_t>(options_.kdop / 2)),
+                          options_.kdop, bounder_.maps().vertex_error};
+    parallel_blocks(jobs_.size(), 64, [&](std::size_t first, std::size_t last) { evaluate_leaves(input, std::span(jobs_).subspan(first, last - first)); });
+    counts_.leaves += jobs_.size();
+    wanted_leaves_.clear();
+}
+
+} // namespace cinch

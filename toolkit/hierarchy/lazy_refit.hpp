@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "toolkit/hierarchy/bounder.hpp"
+#include "toolkit/hierarchy/dop.hpp"
+#include "toolkit/hierarchy/leaf_set.hpp"
+
+namespace cinch {
+
+/// How the BVs of a frame come about.
+enum class Update : std::uint8_t {
+    lazy,      ///< the cut by the methods, above it by merging, below it on demand; leaves from their vertices
+    full,      ///< all leaves from their vertices, all other BVs by merging: O(ℓ)
+    automatic, ///< full for a body of which the last query touched more than half of the leaves, else lazy
+};
+
+struct LazyOptions {
+    Methods methods = Method::best;
+    int kdop = 6;
+    Precision precision = Precision::float32;
+    Update update = Update::automatic;
+};
+
+/// What a frame took.
+struct LazyCounts {
+    std::size_t bounds = 0;   ///< BVs bounded by the methods
+    std::size_t leaves = 0;   ///< deformed
+    std::size_t vertices = 0; ///< of these leaves, those at their borders counted in each
+    std::size_t merged = 0;   ///< BVs bounded by their children
+};
+
+/// The BVs of one body in a frame, brought up to date as far as a query goes (§4.2 of the paper). Each tree keeps its *cut*: the BVs where
+/// the last query went no further. At the beginning of a frame these are bounded by the methods, all above them by their children. What
+/// the query wants below is bounded when it wants it. Not thread-safe but for what is const.
+class LazyRefit {
+public:
+    static constexpr std::uint32_t no_slot = ~0u;
+
+    /// The surface must stay as it is, and alive; so must the BVH for methods without kernels (sphere, corners, vertices). Throws
+    /// std::invalid_argument for leaves of more than 16 triangles or vertices and a k that is none.
+    LazyRefit(const Bvh& bvh, const DeformableSurface& surface, const LazyOptions& options);
+
+    /// Begins a frame. `maps` must stay alive through it. Throws std::invalid_argument unless there is one transform per simulation node.
+    void begin(std::span<const AffineMap> maps);
+
+    bool empty() const { return links_.empty(); }
+    /// False if the transform of a simulation node with influence is not finite, or so large that vertices may not be: nothing is
+    /// known of where the body is.
+    bool known() const { return known_; }
+    const Vec3& origin() const { return bounder_.maps().origin; } ///< to which supports and positions are relative
+    std::span<const AffineMap> maps() const { return maps_; }
+
+    /// What a query must know of a BV.
+    struct Link {
+        std::uint32_t child = 0; ///< the first of two; of a leaf, its place among the leaves
+        float size = 0;          ///< at rest; negative for a leaf
+        std::uint32_t expanded = 0; ///< frame in which its children were last looked at
+
+        bool is_leaf() const { return size < 0; }
+    };
+    const Link& link(std::uint32_t bv) const { return links_[bv]; }
+    float* dop(std::uint32_t bv) { return dops_.data() + bv * dop_floats(options_.kdop); }
+    const float* dop(std::uint32_t bv) const { return dops_.data() + bv * dop_floats(options_.kdop); }
+
+    /// A query looks at a BV's children: they are noted where they are not up to date, and supply() bounds all that were noted, in parallel.
+    void expand(std::uint32_t bv);
+    void supply();
+    bool current(std::uint32_t bv) const { return dop(bv)[dop_side(options_.kdop) - 1] == stamp_; }
+
+    /// Of a leaf that is current. See leaf_slot_floats.
+    const float* slot(std::uint32_t bv) const { return slots_.data() + slot_of_[links_[bv].child] * leaf_slot_floats(leaves_.lanes); }
+    const PackedLeaf& leaf(std::uint32_t bv) const { return leaves_.leaves[links_[bv].child]; }
+    std::size_t lanes() const { return leaves_.lanes; }
+    /// Triangle of the mesh, from a leaf's first_triangle on.
+    std::uint32_t triangle(std::size_t place) const { return triangle_[place]; }
+
+    const LazyCounts& counts() const { return counts_; } ///< of the frame so far
+    bool fully_refitted() const { return full_; }
+    std::size_t bytes() const; ///< of everything but the surface
+    const LazyOptions& options() const { return options_; }
+
+private:
+    void note(std::uint32_t bv);
+    void merge(std::uint32_t bv);
+    void stamp(std::uint32_t bv) { dop(bv)[dop_side(options_.kdop) - 1] = stamp_; }
+    void refit_all();
+    bool was_expanded(std::uint32_t bv) const { return links_[bv].expanded + 1 == frame_; }
+
+    const DeformableSurface& surface_;
+    LazyOptions options_;
+    Bounder bounder_;
+    LeafSet leaves_;
+    std::vector<Link> links_;
+    std::vector<std::uint32_t> triangle_, influencing_; // influencing_: simulation nodes that have weight anywhere
+    AlignedVector<float> dops_;  ///< per BV dop_floats(k); the last pad along the axes is the stamp of the frame that set it
+    AlignedVector<float> slots_; ///< of the leaves deformed in this frame, in order of wanting
+    std::vector<std::uint32_t> slot_of_; ///< per leaf
+    std::size_t slots_used_ = 0;
+
+    std::span<const AffineMap> maps_;
+    std::uint32_t frame_ = 1;
+    float stamp_ = 1;
+    bool known_ = true, full_ = false;
+    std::vector<std::uint32_t> expanded_, before_; ///< in this frame and the last one, parents first
+    std::vector<std::uint32_t> wanted_;            ///< noted: BVs for the methods
+    std::vector<LeafJob> jobs_;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> wanted_leaves_; ///< (BV, slot)
+    LazyCounts counts_;
+};
+
+} // namespace cinch

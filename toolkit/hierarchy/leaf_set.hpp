@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "toolkit/deform/aligned.hpp"
+#include "toolkit/hierarchy/bvh.hpp"
+#include "toolkit/hierarchy/kernel/leaf_kernel.hpp"
+
+namespace cinch {
+
+/// The leaves of a Bvh, in order of their BVs, as evaluate_leaves reads them. Stands alone: Bvh and surface may go.
+struct LeafSet {
+    std::size_t lanes = 16; ///< 4, 8 or 16: room for the triangles and vertices of every leaf
+    std::vector<PackedLeaf> leaves;
+    AlignedVector<float> value;
+
+    std::size_t bytes() const { return leaves.size() * sizeof(leaves[0]) + value.size() * sizeof(float); }
+};
+
+/// `rest_origin`: of the projected maps (RestExtent::origin). Throws std::invalid_argument for leaves of more than 16 triangles or vertices.
+LeafSet pack_leaves(const Bvh& bvh, const DeformableSurface& surface, const Vec3& rest_origin);
+
+} // namespace cinch
