@@ -10,16 +10,12 @@
 namespace cinch {
 namespace {
 
-// The median image of the rest origin over a sample of the nodes, on a grid so coarse that a few of them do not move it, and (0, 0, 0)
-// where it is near.
-Vec3 body_origin(std::span<const AffineMap> maps, const RestExtent& rest)
+// The median image of the rest origin over a sample of the nodes: a few of them do not move it.
+Vec3 median_image(std::span<const AffineMap> maps, const RestExtent& rest)
 {
-    const double grid = std::exp2(std::ceil(std::log2(rest.about_origin.maxCoeff()))) * 4;
-    Vec3 origin = Vec3::Zero();
-    if (!(grid > 0) || !std::isfinite(grid))
-        return origin;
     constexpr std::size_t sample = 16;
     const std::size_t step = (maps.size() + sample - 1) / sample;
+    Vec3 median = Vec3::Zero();
     for (int r = 0; r < 3; ++r) {
         std::array<double, sample> image;
         auto end = image.begin();
@@ -33,11 +29,9 @@ Vec3 body_origin(std::span<const AffineMap> maps, const RestExtent& rest)
             continue;
         const auto middle = image.begin() + (end - image.begin()) / 2;
         std::nth_element(image.begin(), middle, end);
-        const double cells = *middle / grid;
-        if (std::abs(cells) < 0x1p50)
-            origin[r] = std::round(cells) * grid;
+        median[r] = *middle;
     }
-    return origin;
+    return median;
 }
 
 // Of nodes 8i to 8i + 7 side by side.
@@ -51,13 +45,23 @@ template <class T> void set_octets(std::size_t nodes, std::size_t record, Projec
 
 } // namespace
 
+Vec3 on_grid(const Vec3& image, const RestExtent& rest)
+{
+    const double grid = std::exp2(std::ceil(std::log2(rest.about_origin.maxCoeff()))) * 4;
+    Vec3 origin = Vec3::Zero();
+    for (int r = 0; r < 3; ++r)
+        if (const double cells = image[r] / grid; grid > 0 && std::isfinite(grid) && std::abs(cells) < 0x1p50)
+            origin[r] = std::round(cells) * grid;
+    return origin;
+}
+
 template <class T>
 void project(std::span<const AffineMap> maps, const RestExtent& rest, int kdop, Rounding rounding, ProjectedMaps<T>& out, Octets octets)
 {
     const auto axes = axes_of(kdop);
     const std::size_t record = 4 * projected_rows(axes.size());
     out.kdop = kdop;
-    out.origin = maps.empty() ? Vec3::Zero() : body_origin(maps, rest);
+    out.origin = maps.empty() ? Vec3::Zero() : on_grid(median_image(maps, rest), rest);
     out.value.resize(maps.size() * record);
     const ProjectionReport report = project_nodes(maps, rest, axes, rounding == Rounding::proven, out.origin, out.value.data());
     out.unbounded = report.unbounded;

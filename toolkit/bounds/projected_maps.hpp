@@ -37,6 +37,9 @@ template <class T> struct ProjectedMaps {
     const T* of(std::uint32_t node) const { return value.data() + node * 4 * projected_rows(static_cast<std::size_t>(kdop / 2)); }
 };
 
+/// The point nearest to `image` of a grid several times as coarse as the surface is large: (0, 0, 0) where that is near.
+Vec3 on_grid(const Vec3& image, const RestExtent& rest);
+
 /// Octets speed up BVs that most simulation nodes influence, and change no result.
 enum class Octets : std::uint8_t { wanted, left_out };
 

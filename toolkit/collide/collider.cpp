@@ -39,10 +39,10 @@ std::size_t Collider::bytes() const
     return bytes;
 }
 
-void Collider::update(std::span<const std::span<const AffineMap>> frames)
+void Collider::update(std::span<const BodyFrame> frames)
 {
     if (frames.size() != trees_.size())
-        throw std::invalid_argument("Collider::update: one list of transforms per body is needed");
+        throw std::invalid_argument("Collider::update: one frame per body is needed");
     require_default_arithmetic();
     parallel_blocks(trees_.size(), 1, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i)
@@ -285,7 +285,7 @@ void Collider::test_piece(Piece& piece) const
     for (const BvPair& leaf : leaves)
         piece.clusters.push_back({a.slot(leaf.a), b.slot(leaf.b), a.dop(leaf.a), b.dop(leaf.b), a.leaf(leaf.a).triangles, b.leaf(leaf.b).triangles});
     test_clusters(pair.clusters, piece.clusters, 0, piece.hits, piece.counts.triangle_tests);
-    ExactPair exact(*surfaces_[pair.a], a.maps(), *surfaces_[pair.b], b.maps());
+    ExactPair exact(*surfaces_[pair.a], a.frame(), *surfaces_[pair.b], b.frame());
     for (const TriangleHit& hit : piece.hits) {
         const TrianglePair triangles{pair.a, a.triangle(a.leaf(leaves[hit.pair].a).first_triangle + hit.i), pair.b,
                                      b.triangle(b.leaf(leaves[hit.pair].b).first_triangle + hit.j)};

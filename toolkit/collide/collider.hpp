@@ -48,9 +48,9 @@ public:
     /// Surfaces must stay as they are, and alive; BVHs too where LazyRefit says so, which see for what is thrown.
     void add(const Bvh& bvh, const DeformableSurface& surface);
 
-    /// Begins a frame: one list of transforms per body, which must stay alive until after the query. Throws std::invalid_argument for
-    /// other numbers of them, std::runtime_error for a changed floating-point environment.
-    void update(std::span<const std::span<const AffineMap>> frames);
+    /// Begins a frame, one per body; what it points to must stay alive until after the query. Throws std::invalid_argument for sizes that do
+    /// not fit, std::runtime_error for a changed floating-point environment.
+    void update(std::span<const BodyFrame> frames);
 
     /// Queries the frame. `sink` gets the pairs in order, piece by piece, and says whether to go on. True if there are any.
     using Sink = std::function<bool(std::span<const TrianglePair>)>;

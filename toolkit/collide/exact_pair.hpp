@@ -5,15 +5,15 @@
 
 #include "toolkit/collide/triangle_pair.hpp"
 #include "toolkit/deform/evaluate.hpp"
-#include "toolkit/deform/surface.hpp"
+#include "toolkit/hierarchy/lazy_refit.hpp"
 
 namespace cinch {
 
-/// Pairs of triangles of two deformed bodies by exact predicates on the vertices of evaluate_vertex. Remembers the last triangle of each.
+/// Pairs of triangles of two deformed bodies by exact predicates on the vertices of evaluate_vertex, or those given. Remembers the last triangle of each.
 class ExactPair {
 public:
-    ExactPair(const DeformableSurface& a, std::span<const AffineMap> maps_a, const DeformableSurface& b, std::span<const AffineMap> maps_b)
-        : a_{a, maps_a, {}, {}, {}}, b_{b, maps_b, {}, {}, {}}
+    ExactPair(const DeformableSurface& a, const BodyFrame& frame_a, const DeformableSurface& b, const BodyFrame& frame_b)
+        : a_{a, frame_a, {}, {}, {}}, b_{b, frame_b, {}, {}, {}}
     {
     }
     bool intersect(std::uint32_t triangle_a, std::uint32_t triangle_b)
@@ -36,7 +36,7 @@ public:
 private:
     struct Body {
         const DeformableSurface& surface;
-        std::span<const AffineMap> maps;
+        BodyFrame frame;
         TrianglePoints points;
         Vec3 low, high;
         std::uint32_t triangle = ~0u;
@@ -48,7 +48,7 @@ private:
             triangle = t;
             for (std::size_t c = 0; c < 3; ++c) {
                 const std::uint32_t k = surface.mesh.triangles[t][c];
-                points[c] = evaluate_vertex(surface.mesh.vertices[k], surface.weights.of(k), maps);
+                points[c] = frame.positions.empty() ? evaluate_vertex(surface.mesh.vertices[k], surface.weights.of(k), frame.maps) : frame.positions[k];
             }
             low = points[0].cwiseMin(points[1]).cwiseMin(points[2]);
             high = points[0].cwiseMax(points[1]).cwiseMax(points[2]);

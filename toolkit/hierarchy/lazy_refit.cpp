@@ -3,8 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
+#include "toolkit/bounds/directions.hpp"
+#include "toolkit/bounds/rounding.hpp"
+#include "toolkit/deform/arithmetic.hpp"
 #include "toolkit/deform/parallel.hpp"
 
 namespace cinch {
@@ -12,7 +16,7 @@ namespace {
 
 constexpr float last_stamp = 0x1p24f; // floats count by ones up to here
 
-RefitOptions refit_options(const LazyOptions& o) { return {o.methods, o.kdop, Rounding::proven, o.precision}; }
+RefitOptions refit_options(const LazyOptions& o) { return {o.methods, o.kdop, Rounding::proven, o.precision, 1, o.rest_shape}; }
 
 bool is_known(const AffineMap& map, const Vec3& absolute)
 {
@@ -28,7 +32,7 @@ bool is_known(const AffineMap& map, const Vec3& absolute)
 
 LazyRefit::LazyRefit(const Bvh& bvh, const DeformableSurface& surface, const LazyOptions& options)
     : surface_(surface), options_(options), bounder_(bvh, surface, refit_options(options), Bounder::Leaves::left_out),
-      leaves_(pack_leaves(bvh, surface, bounder_.rest().origin)), triangle_(bvh.triangle)
+      leaves_(pack_leaves(bvh, surface, bounder_.rest().origin, options.lanes)), triangle_(bvh.triangle)
 {
     links_.resize(bvh.bvs.size());
     std::uint32_t leaf = 0;
@@ -54,11 +58,16 @@ std::size_t LazyRefit::bytes() const
            size(before_) + size(wanted_) + size(jobs_) + size(wanted_leaves_);
 }
 
-void LazyRefit::begin(std::span<const AffineMap> maps)
+void LazyRefit::begin(const BodyFrame& frame)
 {
-    maps_ = maps;
-    const std::size_t unbounded = bounder_.begin(maps);
-    known_ = unbounded == 0 || std::all_of(influencing_.begin(), influencing_.end(), [&](std::uint32_t j) { return is_known(maps[j], bounder_.rest().absolute); });
+    now_ = frame;
+    if (frame.positions.empty()) {
+        const std::size_t unbounded = bounder_.begin(frame.maps);
+        origin_ = bounder_.maps().origin;
+        known_ = unbounded == 0 || std::all_of(influencing_.begin(), influencing_.end(), [&](std::uint32_t j) { return is_known(frame.maps[j], bounder_.rest().absolute); });
+    } else {
+        begin_with(frame.positions);
+    }
     counts_ = {};
     slots_used_ = 0;
     std::swap(before_, expanded_);
@@ -77,7 +86,7 @@ void LazyRefit::begin(std::span<const AffineMap> maps)
     for (const std::uint32_t bv : before_)
         for (std::uint32_t c = links_[bv].child; c < links_[bv].child + 2; ++c)
             touched += links_[c].is_leaf();
-    full_ = options_.update == Update::full || (options_.update == Update::automatic && 2 * touched > leaves_.leaves.size());
+    full_ = !frame.positions.empty() || options_.update == Update::full || (options_.update == Update::automatic && 2 * touched > leaves_.leaves.size());
     if (full_)
         return refit_all();
     if (before_.empty())
@@ -88,6 +97,18 @@ void LazyRefit::begin(std::span<const AffineMap> maps)
                 note(c);
     supply();
     std::for_each(before_.rbegin(), before_.rend(), [&](std::uint32_t bv) { merge(bv); }); // children before parents
+}
+
+// Relative to the first vertex, on the grid of projected maps.
+void LazyRefit::begin_with(std::span<const Vec3> positions)
+{
+    if (positions.size() != surface_.mesh.vertices.size())
+        throw std::invalid_argument("LazyRefit::begin: one position per vertex is needed");
+    require_default_arithmetic();
+    known_ = std::all_of(positions.begin(), positions.end(), [](const Vec3& x) { return x.allFinite(); });
+    origin_ = Vec3::Zero();
+    if (known_)
+        origin_ = on_grid(positions[0], bounder_.rest());
 }
 
 void LazyRefit::refit_all()
@@ -152,10 +173,62 @@ void LazyRefit::supply()
         jobs_.push_back({links_[bv].child, slots_.data() + slot * slot_floats, dop(bv)});
         counts_.vertices += leaves_.leaves[links_[bv].child].vertices;
     }
+    counts_.leaves += jobs_.size();
+    if (!now_.positions.empty())
+        return place_leaves();
     const LeafInput input{leaves_.lanes, leaves_.leaves, leaves_.value.data(), bounder_.maps().value.data(), 4 * projected_rows(static_cast<std::size_t>(options_.kdop / 2)),
                           options_.kdop, bounder_.maps().vertex_error};
     parallel_blocks(jobs_.size(), 64, [&](std::size_t first, std::size_t last) { evaluate_leaves(input, std::span(jobs_).subspan(first, last - first)); });
-    counts_.leaves += jobs_.size();
+    wanted_leaves_.clear();
+}
+
+// The leaves' corners from the positions, relative to the first: (x − O) − R passes two roundings of doubles, and one to float.
+void LazyRefit::place_leaves()
+{
+    const std::size_t lanes = leaves_.lanes, side = dop_side(options_.kdop);
+    const auto axes = axes_of(options_.kdop);
+    parallel_blocks(jobs_.size(), 64, [&](std::size_t first, std::size_t last) {
+        for (const LeafJob& job : std::span(jobs_).subspan(first, last - first)) {
+            const PackedLeaf& leaf = leaves_.leaves[job.leaf];
+            LeafPlace& place = place_of(job.slot, lanes);
+            const Vec3& start = now_.positions[surface_.mesh.triangles[triangle_[leaf.first_triangle]][0]];
+            float far = 0, out = 0;
+            for (int r = 0; r < 3; ++r) {
+                place.reference[r] = static_cast<float>(start[r] - origin_[r]);
+                out = std::max(out, std::abs(place.reference[r]));
+            }
+            for (std::size_t t = 0; t < lanes; ++t) {
+                const Triangle& triangle = surface_.mesh.triangles[triangle_[leaf.first_triangle + std::min<std::size_t>(t, leaf.triangles - 1)]];
+                for (std::size_t c = 0; c < 3; ++c)
+                    for (std::size_t r = 0; r < 3; ++r) {
+                        const int row = static_cast<int>(r);
+                        const auto x = static_cast<float>((now_.positions[triangle[c]][row] - origin_[row]) - static_cast<double>(place.reference[r]));
+                        job.slot[(3 * c + r) * lanes + t] = x;
+                        far = std::max(far, std::abs(x));
+                    }
+            }
+            place.error = succ(2 * unit_roundoff_of<float> * far + 0x1p-50f * (far + out));
+            place.difference = 2 * place.error;
+            if (!(far < std::numeric_limits<float>::infinity() && out < std::numeric_limits<float>::infinity()))
+                place.error = place.difference = std::numeric_limits<float>::infinity();
+            for (std::size_t a = 0; a < axes.size(); ++a) {
+                float most = -std::numeric_limits<float>::infinity(), least = -most, middle = 0;
+                for (std::size_t c = 0; c < 3; ++c)
+                    for (std::size_t t = 0; t < lanes; ++t) {
+                        float along = 0;
+                        for (std::size_t r = 0; r < 3; ++r)
+                            along += static_cast<float>(axes[a][r]) * job.slot[(3 * c + r) * lanes + t];
+                        most = std::max(most, along);
+                        least = std::min(least, along);
+                    }
+                for (std::size_t r = 0; r < 3; ++r)
+                    middle += static_cast<float>(axes[a][r]) * place.reference[r];
+                const float wider = succ(3 * place.error + 16 * unit_roundoff_of<float> * (far + out)); // sums of up to three pass 2 roundings
+                job.dop[a] = succ(succ(most + middle) + wider);
+                job.dop[side + a] = succ(succ(-least - middle) + wider);
+            }
+        }
+    });
     wanted_leaves_.clear();
 }
 

@@ -23,6 +23,14 @@ struct LazyOptions {
     int kdop = 6;
     Precision precision = Precision::float32;
     Update update = Update::automatic;
+    RestShape rest_shape = RestShape::aabb; ///< for convex, eq12 and limited
+    std::size_t lanes = 16; ///< 4, 8 or 16: room for the triangles and vertices of every leaf
+};
+
+/// A body's motion in a frame.
+struct BodyFrame {
+    std::span<const AffineMap> maps;   ///< one per simulation node
+    std::span<const Vec3> positions{}; ///< of all vertices, where they are there anyway: then these are the vertices, and the update is full
 };
 
 /// What a frame took.
@@ -41,18 +49,19 @@ public:
     static constexpr std::uint32_t no_slot = ~0u;
 
     /// The surface must stay as it is, and alive; so must the BVH for methods without kernels (sphere, corners, vertices). Throws
-    /// std::invalid_argument for leaves of more than 16 triangles or vertices and a k that is none.
+    /// std::invalid_argument for leaves that have not enough lanes and a k that is none.
     LazyRefit(const Bvh& bvh, const DeformableSurface& surface, const LazyOptions& options);
 
-    /// Begins a frame. `maps` must stay alive through it. Throws std::invalid_argument unless there is one transform per simulation node.
-    void begin(std::span<const AffineMap> maps);
+    /// Begins a frame; what it points to must stay alive through it. Throws std::invalid_argument unless there is one transform per
+    /// simulation node, or one position per vertex.
+    void begin(const BodyFrame& frame);
 
     bool empty() const { return links_.empty(); }
     /// False if the transform of a simulation node with influence is not finite, or so large that vertices may not be: nothing is
     /// known of where the body is.
     bool known() const { return known_; }
-    const Vec3& origin() const { return bounder_.maps().origin; } ///< to which supports and positions are relative
-    std::span<const AffineMap> maps() const { return maps_; }
+    const Vec3& origin() const { return origin_; } ///< to which supports and positions are relative
+    const BodyFrame& frame() const { return now_; }
 
     /// What a query must know of a BV.
     struct Link {
@@ -84,6 +93,8 @@ public:
     const LazyOptions& options() const { return options_; }
 
 private:
+    void begin_with(std::span<const Vec3> positions);
+    void place_leaves();
     void note(std::uint32_t bv);
     void merge(std::uint32_t bv);
     void stamp(std::uint32_t bv) { dop(bv)[dop_side(options_.kdop) - 1] = stamp_; }
@@ -101,7 +112,8 @@ private:
     std::vector<std::uint32_t> slot_of_; ///< per leaf
     std::size_t slots_used_ = 0;
 
-    std::span<const AffineMap> maps_;
+    BodyFrame now_;
+    Vec3 origin_ = Vec3::Zero();
     std::uint32_t frame_ = 1;
     float stamp_ = 1;
     bool known_ = true, full_ = false;

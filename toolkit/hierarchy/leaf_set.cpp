@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numeric>
 #include <stdexcept>
 
 #include "toolkit/bounds/rounding.hpp"
@@ -16,9 +17,6 @@ float at_least(double x) // for x ≥ 0
     const float f = static_cast<float>(x);
     return static_cast<double>(f) >= x ? f : succ(f);
 }
-
-// Lanes that hold so many triangles or vertices.
-std::size_t lanes_for(std::size_t most) { return most <= 4 ? 4 : most <= 8 ? 8 : 16; }
 
 void pack_leaf(const DeformableSurface& surface, const Bvh& bvh, const Bv& bv, const std::vector<std::uint32_t>& vertices, const Vec3& origin, LeafSet& out)
 {
@@ -35,24 +33,39 @@ void pack_leaf(const DeformableSurface& surface, const Bvh& bvh, const Bv& bv, c
     auto* const corner = reinterpret_cast<std::uint8_t*>(value + run.corners());
     auto* const influence = reinterpret_cast<std::uint32_t*>(value + run.influences());
 
+    // The heaviest first: its image of the pivot is the reference.
     const auto nodes = std::span(bvh.node).subspan(bv.first_influence, bv.influence_count);
+    const auto h = std::span(bvh.h).subspan(bv.first_influence, bv.influence_count), l = std::span(bvh.l).subspan(bv.first_influence, bv.influence_count);
+    std::vector<std::size_t> place(nodes.size()); // where each stands
+    std::iota(place.begin(), place.end(), std::size_t{0});
+    std::swap(place[0], place[static_cast<std::size_t>(std::max_element(h.begin(), h.end()) - h.begin())]);
     for (std::size_t j = 0; j < nodes.size(); ++j) {
-        influence[2 * j] = nodes[j];
-        const float h = at_least(bvh.h[bv.first_influence + j]);
-        std::memcpy(influence + 2 * j + 1, &h, sizeof h);
+        std::uint32_t* const words = influence + 4 * place[j];
+        const float most = at_least(h[j]), differing = at_least(h[j] - l[j]); // dyadic: exact
+        words[0] = nodes[j];
+        std::memcpy(words + 1, &most, sizeof most);
+        std::memcpy(words + 2, &differing, sizeof differing);
+    }
+    Vec3 pivot;
+    for (int r = 0; r < 3; ++r) {
+        leaf.pivot[r] = static_cast<float>(bv.pivot[r] - origin[r]);
+        pivot[r] = static_cast<double>(leaf.pivot[r]);
     }
     for (std::size_t lane = 0; lane < L; ++lane) {
         const std::uint32_t k = vertices[std::min(lane, vertices.size() - 1)];
         for (std::size_t r = 0; r < 3; ++r) {
-            const double x = surface.mesh.vertices[k][static_cast<int>(r)] - origin[static_cast<int>(r)];
-            value[r * L + lane] = static_cast<float>(x);
-            // |fl(x)| may be either side of |x|, and x is off by u|x| where the origin is not 0.
-            leaf.reach[r] = std::max(leaf.reach[r], succ(at_least(std::abs(x))));
+            // Two differences of doubles, then a rounding to float. An error of u|x| of the first where the origin is not 0, x the coordinate
+            // about it, may be more than one of the float: it goes to the reach.
+            const int s = static_cast<int>(r);
+            const double x = surface.mesh.vertices[k][s] - origin[s], y = x - pivot[s];
+            value[r * L + lane] = static_cast<float>(y);
+            const double lost = (origin[s] == 0 ? 0 : std::abs(x) * 0x1p-28) + std::abs(y);
+            leaf.reach[r] = std::max(leaf.reach[r], succ(at_least(lost)));
         }
         const Weights::Row row = surface.weights.of(k);
         for (std::size_t i = 0; i < row.node.size(); ++i) {
             const auto j = static_cast<std::size_t>(std::lower_bound(nodes.begin(), nodes.end(), row.node[i]) - nodes.begin());
-            value[run.weights() + j * L + lane] = static_cast<float>(row.weight[i]);
+            value[run.weights() + place[j] * L + lane] = static_cast<float>(row.weight[i]);
         }
     }
     for (std::size_t t = 0; t < L; ++t) {
@@ -65,24 +78,20 @@ void pack_leaf(const DeformableSurface& surface, const Bvh& bvh, const Bv& bv, c
 
 } // namespace
 
-LeafSet pack_leaves(const Bvh& bvh, const DeformableSurface& surface, const Vec3& rest_origin)
+LeafSet pack_leaves(const Bvh& bvh, const DeformableSurface& surface, const Vec3& rest_origin, std::size_t lanes)
 {
+    if (lanes != 4 && lanes != 8 && lanes != 16)
+        throw std::invalid_argument("pack_leaves: lanes are 4, 8 or 16");
     LeafSet out;
-    std::vector<std::vector<std::uint32_t>> vertices;
-    std::size_t most = 1;
+    out.lanes = lanes;
     for (const Bv& bv : bvh.bvs) {
         if (!bv.is_leaf())
             continue;
-        vertices.push_back(vertices_of(surface, bvh, bv));
-        most = std::max({most, vertices.back().size(), std::size_t{bv.triangle_count}});
+        const auto vertices = vertices_of(surface, bvh, bv);
+        if (std::max<std::size_t>(vertices.size(), bv.triangle_count) > lanes)
+            throw std::invalid_argument("pack_leaves: a leaf has more triangles or vertices than lanes; build_bvh(surface, ClusterSize) limits both");
+        pack_leaf(surface, bvh, bv, vertices, rest_origin, out);
     }
-    if (most > 16)
-        throw std::invalid_argument("pack_leaves: a leaf has more than 16 triangles or vertices; build_bvh(surface, ClusterSize{16, 16}) makes none");
-    out.lanes = lanes_for(most);
-    std::size_t leaf = 0;
-    for (const Bv& bv : bvh.bvs)
-        if (bv.is_leaf())
-            pack_leaf(surface, bvh, bv, vertices[leaf++], rest_origin, out);
     out.value.shrink_to_fit();
     return out;
 }

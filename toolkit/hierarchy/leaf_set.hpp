@@ -18,7 +18,15 @@ struct LeafSet {
     std::size_t bytes() const { return leaves.size() * sizeof(leaves[0]) + value.size() * sizeof(float); }
 };
 
-/// `rest_origin`: of the projected maps (RestExtent::origin). Throws std::invalid_argument for leaves of more than 16 triangles or vertices.
-LeafSet pack_leaves(const Bvh& bvh, const DeformableSurface& surface, const Vec3& rest_origin);
+/// `rest_origin`: of the projected maps (RestExtent::origin); lanes: 4, 8 or 16. Throws std::invalid_argument for leaves that have not
+/// enough of them.
+LeafSet pack_leaves(const Bvh& bvh, const DeformableSurface& surface, const Vec3& rest_origin, std::size_t lanes);
+
+/// The fewest lanes for leaves of that size.
+constexpr std::size_t lanes_for(ClusterSize leaf)
+{
+    const std::size_t most = leaf.triangles > leaf.vertices ? leaf.triangles : leaf.vertices;
+    return most <= 4 ? 4 : most <= 8 ? 8 : 16;
+}
 
 } // namespace cinch

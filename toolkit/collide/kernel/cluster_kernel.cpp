@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "toolkit/bounds/rounding.hpp"
+#include "toolkit/hierarchy/kernel/leaf_kernel.hpp"
 
 // As the kernels of the bounds.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
@@ -26,14 +27,11 @@ namespace cinch::HWY_NAMESPACE {
 template <std::size_t L> struct Cluster {
     Wide<L> corner[3][3], low[3], high[3], diagonal;
 
-    HWY_INLINE Cluster(const float* slot, const float* shift)
+    HWY_INLINE Cluster(const float* slot, const float (&shift)[3])
     {
         for (std::size_t c = 0; c < 3; ++c)
-            for (std::size_t r = 0; r < 3; ++r) {
-                corner[c][r] = Wide<L>::load(slot + (3 * c + r) * L);
-                if (shift)
-                    corner[c][r] = corner[c][r] + Wide<L>::all(shift[r]);
-            }
+            for (std::size_t r = 0; r < 3; ++r)
+                corner[c][r] = Wide<L>::load(slot + (3 * c + r) * L) + Wide<L>::all(shift[r]);
         Wide<L> squared = Wide<L>::all(0);
         for (std::size_t r = 0; r < 3; ++r) {
             low[r] = less(less(corner[0][r], corner[1][r]), corner[2][r]);
@@ -51,13 +49,20 @@ template <std::size_t L> struct Cluster {
             apart |= bits_where_greater(low[r], Wide<L>::all(succ(box_high[r] + wider))) | bits_where_greater(Wide<L>::all(-succ(wider - box_low[r])), high[r]);
         return ~apart;
     }
+    HWY_INLINE float furthest() const // coordinate
+    {
+        Wide<L> most = Wide<L>::all(0);
+        for (std::size_t r = 0; r < 3; ++r)
+            most = greater(most, greater(magnitude(low[r]), magnitude(high[r])));
+        return greatest(most);
+    }
 };
 
 /// The planes of a leaf's triangles: normals, and the margins' parts that do not depend on what they are tested against.
 template <std::size_t L> struct Planes {
-    Wide<L> normal[3], length, bend; ///< length: |n|₁; bend: 2√3 h (d + √3 h)
+    Wide<L> normal[3], length, h, bend; ///< length: |n|₁; bend: √3 (h (d + √3 h) + d h), at least
 
-    HWY_INLINE Planes(const Cluster<L>& c, float error)
+    HWY_INLINE Planes(const Cluster<L>& c, float difference)
     {
         Wide<L> e[3], f[3];
         for (std::size_t r = 0; r < 3; ++r) {
@@ -69,7 +74,7 @@ template <std::size_t L> struct Planes {
             normal[r] = fms(e[s], f[t], e[t] * f[s]);
         }
         length = (magnitude(normal[0]) + magnitude(normal[1])) + magnitude(normal[2]);
-        const auto h = fma(c.diagonal, Wide<L>::all(12 * unit_roundoff_of<float>), Wide<L>::all(2 * error));
+        h = fma(c.diagonal, Wide<L>::all(12 * unit_roundoff_of<float>), Wide<L>::all(difference));
         bend = (h * Wide<L>::all(two_root_3)) * fma(h, Wide<L>::all(root_3), c.diagonal);
     }
 };
@@ -98,40 +103,58 @@ HWY_INLINE void take_side(const Wide<L> (&normal)[3], const Wide<L> (&point)[3],
     below = bits_where_greater(Wide<L>::all(0) - along, margin);
 }
 
+/// b's place relative to a's reference point.
+struct Relative {
+    float shift[3];   ///< of b's corners
+    float low[3], high[3]; ///< of the box around b's leaf
+    float error;      ///< of shift
+};
+HWY_INLINE Relative relative(const ClusterInput& in, const ClusterPair& pair, const LeafPlace& a, const LeafPlace& b)
+{
+    Relative out;
+    float far = 0;
+    for (std::size_t r = 0; r < 3; ++r) {
+        const float between = b.reference[r] - a.reference[r];
+        out.shift[r] = between + in.shift[r];
+        far = std::max(far, std::max(std::abs(between), std::abs(out.shift[r])));
+        out.high[r] = succ(succ(succ(pair.dop_b[r] + in.shift[r]) + in.shift_error) - a.reference[r]);
+        out.low[r] = -succ(succ(succ(pair.dop_b[in.side + r] - in.shift[r]) + in.shift_error) + a.reference[r]);
+    }
+    out.error = succ(2 * unit_roundoff_of<float> * far + in.shift_error); // two roundings
+    return out;
+}
+
 template <std::size_t L> void test_pair(const ClusterInput& in, const ClusterPair& pair, std::uint32_t index, std::vector<TriangleHit>& out, std::uint64_t& tests)
 {
-    const bool moved = in.shift[0] != 0 || in.shift[1] != 0 || in.shift[2] != 0;
-    const Cluster<L> a(pair.slot_a, nullptr), b(pair.slot_b, moved ? in.shift : nullptr);
-    const float error_a = pair.slot_a[9 * L];
-    float error_b = pair.slot_b[9 * L];
-    if (moved) { // and the rounding of the sum
-        const float far = greatest(greater(greater(greater(magnitude(b.low[0]), magnitude(b.high[0])), greater(magnitude(b.low[1]), magnitude(b.high[1]))),
-                                           greater(magnitude(b.low[2]), magnitude(b.high[2]))));
-        error_b = succ(succ(error_b + in.shift_error) + 2 * unit_roundoff_of<float> * far);
-    }
+    constexpr float at_home[3] = {0, 0, 0};
+    const LeafPlace &place_a = place_of(pair.slot_a, L), &place_b = place_of(pair.slot_b, L);
+    const Relative to_b = relative(in, pair, place_a, place_b);
     // Which triangles of either meet the box of the other leaf.
+    const Cluster<L> a(pair.slot_a, at_home);
+    std::uint32_t of_a = a.meeting(to_b.low, to_b.high, place_a.error) & ((1u << pair.triangles_a) - 1);
+    if (of_a == 0)
+        return;
+    const Cluster<L> b(pair.slot_b, to_b.shift);
+    const float rounding = 2 * unit_roundoff_of<float> * b.furthest(); // of the sums with the shift
+    const float error_b = succ(succ(place_b.error + to_b.error) + rounding);
     float low[3], high[3];
-    for (std::size_t r = 0; r < 3; ++r) { // of b in a's coordinates
-        high[r] = moved ? succ(succ(pair.dop_b[r] + in.shift[r]) + in.shift_error) : pair.dop_b[r];
-        low[r] = moved ? -succ(succ(pair.dop_b[in.side + r] - in.shift[r]) + in.shift_error) : -pair.dop_b[in.side + r];
-    }
-    std::uint32_t of_a = a.meeting(low, high, error_a) & ((1u << pair.triangles_a) - 1);
     for (std::size_t r = 0; r < 3; ++r) {
-        high[r] = pair.dop_a[r];
-        low[r] = -pair.dop_a[in.side + r];
+        high[r] = succ(pair.dop_a[r] - place_a.reference[r]);
+        low[r] = -succ(pair.dop_a[in.side + r] + place_a.reference[r]);
     }
     const std::uint32_t of_b = b.meeting(low, high, error_b) & ((1u << pair.triangles_b) - 1);
-    if (of_a == 0 || of_b == 0)
+    if (of_b == 0)
         return;
 
-    const float s = succ(error_a + error_b);
-    const Planes<L> planes_a(a, error_a), planes_b(b, error_b);
-    HWY_ALIGN float of_each[8][L]; // of a: normal, |n|₁, bend, diagonal
+    const float s = succ(place_a.error + error_b);
+    const Planes<L> planes_a(a, place_a.difference), planes_b(b, succ(place_b.difference + rounding));
+    HWY_ALIGN float of_each[7][L]; // of a: normal, |n|₁, bend, diagonal, h
     for (std::size_t r = 0; r < 3; ++r)
         planes_a.normal[r].store(of_each[r]);
     planes_a.length.store(of_each[3]);
     planes_a.bend.store(of_each[4]);
     a.diagonal.store(of_each[5]);
+    planes_a.h.store(of_each[6]);
     for (; of_a != 0; of_a &= of_a - 1) {
         const auto i = static_cast<unsigned>(std::countr_zero(of_a));
         float p[3][3];
@@ -172,8 +195,10 @@ template <std::size_t L> void test_pair(const ClusterInput& in, const ClusterPai
         if (left == 0)
             continue;
         const std::uint32_t certain = sides_a.certain() & sides_b.certain();
-        HWY_ALIGN float diagonals[L];
-        diagonal.store(diagonals);
+        HWY_ALIGN float D[L], d[L], h[L];
+        diagonal.store(D);
+        b.diagonal.store(d);
+        planes_b.h.store(h);
         for (; left != 0; left &= left - 1) {
             const auto j = static_cast<unsigned>(std::countr_zero(left));
             int answer = 0; // of certain_pair
@@ -181,8 +206,8 @@ template <std::size_t L> void test_pair(const ClusterInput& in, const ClusterPai
                 float q[3][3];
                 for (std::size_t c = 0; c < 3; ++c)
                     for (std::size_t r = 0; r < 3; ++r)
-                        q[c][r] = moved ? pair.slot_b[(3 * c + r) * L + j] + in.shift[r] : pair.slot_b[(3 * c + r) * L + j];
-                answer = certain_pair(p, q, sides_a.signs(j), sides_b.signs(j), 2 * std::max(error_a, error_b), diagonals[j]);
+                        q[c][r] = pair.slot_b[(3 * c + r) * L + j] + to_b.shift[r];
+                answer = certain_pair(p, q, sides_a.signs(j), sides_b.signs(j), {s, D[j], of_each[5][i], of_each[6][i], d[j], h[j]});
             }
             if (answer >= 0)
                 out.push_back({index, static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(j), answer == 0});

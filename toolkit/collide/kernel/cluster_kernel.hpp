@@ -17,7 +17,7 @@ struct ClusterPair {
 
 struct ClusterInput {
     std::size_t lanes = 16, side = 4;
-    float shift[3] = {0, 0, 0}; ///< of b's origin from a's
+    float shift[3] = {0, 0, 0}; ///< of b's body's origin from a's
     float shift_error = 0;      ///< by how much any of them is off at most
 };
 
@@ -31,16 +31,16 @@ struct TriangleHit {
 /// Appends what may intersect to `out`, by pair, i, j; whatever is left out certainly does not. Counts the pairs of triangles whose boxes
 /// overlap. Everything holds for the vertices of evaluate_vertex. The same on every target.
 ///
-/// u = 2^-24; ε bounds how far a coordinate is off (the slot's, and for b the shift's), s = ε_a + ε_b. A determinant of three differences of
-/// points, x, y, z as computed and X, Y, Z in truth with |X − x|∞ ≤ g_x and so on:
-///   |det(X, Y, Z) − det(x, y, z)| ≤ √3 (g_x ‖Y‖‖Z‖ + ‖x‖ g_y ‖Z‖) + g_z |x × y|₁, or √3 ‖x‖‖y‖ g_z for its last term,
+/// All is relative to a's reference point, where coordinates are small. u = 2^-24; s bounds how far a coordinate of one leaf is off against
+/// the other's, κ those of two vertices of the same leaf (LeafPlace). For a determinant of three differences of points, x, y, z as computed
+/// and X, Y, Z in truth with |X − x|∞ ≤ g_x and so on:
+///   |det(X, Y, Z) − det(x, y, z)| ≤ √3 (g_x ‖Y‖‖Z‖ + ‖x‖ g_y ‖Z‖) + g_z |x × y|₁,
 /// and (x × y)·z by fused multiply-adds is off by 27u|x|∞|y|∞|z|∞: 3u a component of x × y, then γ₃ of terms ≤ 2|x|∞|y|∞|z|∞.
-/// Two triangles whose boxes overlap lie in a box of diagonal D ≤ d_a + d_b + 2s, d their own. So
-///   side of a point of one to the plane of the other (computed normal n, error ε and diagonal d the triangle's): g = s + uD,
-///     h = 2ε + 12u d: margin g|n|₁ + 2√3 h (d + √3 h)(D + √3 g). Rounding needs 27u + 2√3u for the differences' and, g ≤ D/2, 5u for
-///     that of n in g|n|₁, of d²D; there is 2√3·12u.
-///   any four of the points: g = 2 max ε + 8uD: margin 3√3 g (D + √3 g)²; of D³ it needs 27u + 3√3u, there is 3√3·8u;
-/// each times 1 + 2^-16 for the rounding of the margin itself and of D, plus 2^-120 for underflow.
+/// Two triangles whose boxes overlap lie in a box of diagonal D ≤ d_a + d_b + 2s, d their own. Here x and y are edges, of the same triangle
+/// for the side of a point to its plane, else of one each; z goes from the one triangle to the other. So with g = s + uD, h = κ + 12u d:
+///   margin g|x × y|₁ + √3 (h_x (d_y + √3 h_y) + d_x h_y)(D + √3 g).
+/// Rounding needs 27u + 2√3u for the differences' and, g ≤ D/2, 5u for that of x × y in the first term, of d_x d_y D; there is 2√3·12u.
+/// Times 1 + 2^-16 for the rounding of the margin itself and of D, plus 2^-120 for underflow.
 void test_clusters(const ClusterInput& input, std::span<const ClusterPair> pairs, std::uint32_t first_pair, std::vector<TriangleHit>& out, std::uint64_t& triangle_tests);
 
 } // namespace cinch

@@ -9,6 +9,7 @@
 #include "toolkit/bounds/directions.hpp"
 #include "toolkit/bounds/projected_maps.hpp"
 #include "toolkit/bounds/rounding.hpp"
+#include "toolkit/deform/aligned.hpp"
 #include "toolkit/hierarchy/dop.hpp"
 
 // As the kernels of the bounds.
@@ -26,97 +27,181 @@ namespace cinch::HWY_NAMESPACE {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
-// Σ_j h_j |q_j| and Σ_j h_j |θ_j| per row, and whether every node has a map.
-struct Magnitudes {
-    float row[3][4];
+/// 16 floats of a record: rows of q and θ, and what comes after.
+using Record = Wide<16>;
+HWY_INLINE Record load_record(const float* p)
+{
+    Record x;
+    for (std::size_t i = 0; i < Record::vectors; ++i)
+        x.v[i] = hn::LoadU(Record::D(), p + i * Record::width);
+    return x;
+}
+/// In every lane the sum of its four, ((0 + 1) + (2 + 3)).
+HWY_INLINE Record sum_of_fours(const Record& x)
+{
+#if HWY_TARGET == HWY_SCALAR
+    Record out;
+    for (std::size_t r = 0; r < 16; r += 4)
+        for (std::size_t s = 0; s < 4; ++s)
+            out.v[r + s] = hn::Add(hn::Add(x.v[r], x.v[r + 1]), hn::Add(x.v[r + 2], x.v[r + 3]));
+    return out;
+#else
+    const auto pairs = each(x, x, [](auto v, auto) { return hn::Add(v, hn::Shuffle2301(v)); });
+    return each(pairs, pairs, [](auto v, auto) { return hn::Add(v, hn::Shuffle1032(v)); });
+#endif
+}
+/// `at_three` in lanes 3, 7, 11, …, else x.
+HWY_INLINE Record with_last(const Record& x, const Record& at_three, const Record& threes)
+{
+    Record out;
+    for (std::size_t i = 0; i < Record::vectors; ++i)
+        out.v[i] = hn::IfThenElse(hn::Gt(threes.v[i], hn::Zero(Record::D())), at_three.v[i], x.v[i]);
+    return out;
+}
+
+// Of a leaf's simulation nodes: the maps about the pivot, and the sums that bound their errors.
+struct NodeSums {
+    float reference[3], images, differing, spread; // images: Σ h N, differing: Σ r N, spread: M; each the greatest of the three rows
+    float maps;                                    // Σ h |A|, all together
     bool known;
 };
-HWY_INLINE Magnitudes magnitudes(const LeafInput& in, const std::uint32_t* influence, std::size_t nodes)
+
+// maps: per node A_r and U_r in rows of four, 16 floats each.
+HWY_INLINE NodeSums prepare_nodes(const LeafInput& in, const PackedLeaf& leaf, const std::uint32_t* influence, float* maps)
 {
-    using Quad = Wide<4>;
-    Quad sum[3] = {Quad::all(0), Quad::all(0), Quad::all(0)};
-    float charge = 0;
-    for (std::size_t j = 0; j < nodes; ++j) {
-        const float* map = in.records + influence[2 * j] * in.record;
-        float h;
-        std::memcpy(&h, influence + 2 * j + 1, sizeof h);
-        for (std::size_t r = 0; r < 3; ++r)
-            sum[r] = fma(magnitude(Quad::load(map + 4 * r)), Quad::all(h), sum[r]);
-        charge = std::max(charge, map[in.record - 1]);
+    HWY_ALIGN constexpr float third[16] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+    HWY_ALIGN float z[16];
+    for (std::size_t r = 0; r < 16; r += 4) {
+        std::copy_n(leaf.pivot, 3, z + r);
+        z[r + 3] = 1;
     }
-    Magnitudes out;
-    HWY_ALIGN float row[4];
+    const auto pivot = Record::load(z), threes = Record::load(third);
+    auto by_h = Record::all(0), by_r = Record::all(0), spread = Record::all(0), reference = Record::all(0);
+    float charge = 0;
+    for (std::size_t j = 0; j < leaf.nodes; ++j) {
+        const float* record = in.records + influence[4 * j] * in.record;
+        float h, r;
+        std::memcpy(&h, influence + 4 * j + 1, sizeof h);
+        std::memcpy(&r, influence + 4 * j + 2, sizeof r);
+        const auto map = load_record(record), image = sum_of_fours(map * pivot);
+        if (j == 0)
+            reference = image;
+        const auto from_reference = image - reference, size = magnitude(map);
+        with_last(map, from_reference, threes).store(maps + 16 * j);
+        by_h = fma(size, Record::all(h), by_h);
+        by_r = fma(size, Record::all(r), by_r);
+        spread = fma(magnitude(from_reference), Record::all(h), spread);
+        charge = std::max(charge, record[in.record - 1]);
+    }
+    HWY_ALIGN float R[16], H[16], D[16], S[16];
+    reference.store(R);
+    by_h.store(H);
+    by_r.store(D);
+    spread.store(S);
+    NodeSums out{};
+    const float* x = leaf.reach;
+    float most_z[3];
+    for (std::size_t s = 0; s < 3; ++s)
+        most_z[s] = std::abs(leaf.pivot[s]);
     for (std::size_t r = 0; r < 3; ++r) {
-        sum[r].store(row);
-        std::copy_n(row, 4, out.row[r]);
+        const float *h = H + 4 * r, *d = D + 4 * r;
+        out.reference[r] = R[4 * r];
+        out.images = std::max(out.images, ((h[0] * most_z[0] + h[1] * most_z[1]) + h[2] * most_z[2]) + h[3]);
+        out.differing = std::max(out.differing, ((d[0] * most_z[0] + d[1] * most_z[1]) + d[2] * most_z[2]) + d[3]);
+        out.spread = std::max(out.spread, ((h[0] * x[0] + h[1] * x[1]) + h[2] * x[2]) + S[4 * r]);
+        out.maps += (h[0] + h[1]) + h[2];
     }
     out.known = charge < infinity;
     return out;
 }
 
 // See evaluate_leaves.
-HWY_INLINE float position_error(const Magnitudes& m, const PackedLeaf& leaf, float vertex_error)
+HWY_INLINE LeafPlace errors_of(const NodeSums& m, const PackedLeaf& leaf, float vertex_error)
 {
-    const float* x = leaf.reach;
+    LeafPlace place{{m.reference[0], m.reference[1], m.reference[2]}, infinity, infinity};
+    if (!m.known)
+        return place;
+    constexpr float u = unit_roundoff_of<float> * 1.02f;
     const float n = static_cast<float>(leaf.nodes + 8);
-    float most = 0, all = ((1 + x[0]) + x[1]) + x[2];
-    for (const auto& row : m.row) {
-        most = std::max(most, ((row[0] * x[0] + row[1] * x[1]) + row[2] * x[2]) + row[3]);
-        all += (row[0] + row[1]) + row[2];
-    }
-    const float rounding = (n * 1.02f * unit_roundoff_of<float>) * most, underflow = (n * 2 * smallest_subnormal_of<float>) * all;
-    return succ(succ(rounding + underflow) + vertex_error);
+    const float extent = ((leaf.reach[0] + leaf.reach[1]) + leaf.reach[2]) + ((std::abs(leaf.pivot[0]) + std::abs(leaf.pivot[1])) + std::abs(leaf.pivot[2]));
+    const float underflow = (n * 2 * smallest_subnormal_of<float>) * ((1 + extent) + m.maps), sum = (n * u) * m.spread + underflow;
+    place.error = succ(succ((6 * u) * m.images + sum) + vertex_error);
+    place.difference = succ(succ((6 * u) * m.differing + 2 * sum) + 2 * vertex_error);
+    return place;
 }
 
 // The greatest x on either side of every axis, with their errors.
-template <std::size_t L> HWY_INLINE void bound_vertices(const LeafInput& in, const Wide<L> (&p)[3], float error, float* dop)
+template <std::size_t L> HWY_INLINE void bound_vertices(const LeafInput& in, const Wide<L> (&p)[3], const LeafPlace& place, float* dop)
 {
     const std::size_t side = dop_side(in.kdop);
     const auto axes = axes_of(in.kdop);
     // Sums of up to three coordinates pass 2 roundings.
-    const float far = greatest(greater(greater(magnitude(p[0]), magnitude(p[1])), magnitude(p[2]))), rounding = 8 * unit_roundoff_of<float> * far;
+    const float far = greatest(greater(greater(magnitude(p[0]), magnitude(p[1])), magnitude(p[2])));
+    const float whole = far + std::max(std::max(std::abs(place.reference[0]), std::abs(place.reference[1])), std::abs(place.reference[2]));
+    const float rounding = 16 * unit_roundoff_of<float> * whole;
     for (std::size_t a = 0; a < axes.size(); ++a) {
         Wide<L> along = Wide<L>::all(0);
+        float reference = 0;
         int terms = 0;
         for (std::size_t r = 0; r < 3; ++r)
             if (axes[a][r] != 0) {
                 along = axes[a][r] > 0 ? along + p[r] : along - p[r];
+                reference = axes[a][r] > 0 ? reference + place.reference[r] : reference - place.reference[r];
                 ++terms;
             }
-        const float wider = terms == 1 ? error : succ(succ(static_cast<float>(terms) * error) + rounding);
-        dop[a] = succ(greatest(along) + wider);
-        dop[side + a] = succ(greatest(Wide<L>::all(0) - along) + wider);
+        const float wider = terms == 1 ? place.error : succ(succ(static_cast<float>(terms) * place.error) + rounding);
+        dop[a] = succ(succ(greatest(along) + reference) + wider);
+        dop[side + a] = succ(succ(greatest(Wide<L>::all(0) - along) - reference) + wider);
     }
 }
 
-template <std::size_t L> void evaluate_leaf(const LeafInput& in, const LeafJob& job)
+// Corners of triangles from the vertices.
+template <std::size_t L> HWY_INLINE void place_corners(const Wide<L> (&p)[3], const std::uint8_t* corner, float* slot)
+{
+#if HWY_TARGET != HWY_SCALAR
+    if constexpr (Wide<L>::vectors == 1 && L == 16) {
+        using D = typename Wide<L>::D;
+        const hn::RebindToSigned<D> di;
+        const hn::Rebind<std::uint8_t, D> d8;
+        for (std::size_t c = 0; c < 3; ++c) {
+            const auto index = hn::IndicesFromVec(D(), hn::PromoteTo(di, hn::LoadU(d8, corner + c * L)));
+            for (std::size_t r = 0; r < 3; ++r)
+                hn::Store(hn::TableLookupLanes(p[r].v[0], index), D(), slot + (3 * c + r) * L);
+        }
+        return;
+    }
+#endif
+    HWY_ALIGN float place[3][L];
+    for (std::size_t r = 0; r < 3; ++r)
+        p[r].store(place[r]);
+    for (std::size_t c = 0; c < 3; ++c)
+        for (std::size_t r = 0; r < 3; ++r)
+            for (std::size_t t = 0; t < L; ++t)
+                slot[(3 * c + r) * L + t] = place[r][corner[c * L + t]];
+}
+
+template <std::size_t L> void evaluate_leaf(const LeafInput& in, const LeafJob& job, float* maps)
 {
     const PackedLeaf& leaf = in.leaves[job.leaf];
     const LeafRun run{L, leaf.nodes};
     const float* const value = in.value + leaf.first;
-    const auto* const influence = reinterpret_cast<const std::uint32_t*>(value + run.influences());
     const float* const weights = value + run.weights();
+    const NodeSums nodes = prepare_nodes(in, leaf, reinterpret_cast<const std::uint32_t*>(value + run.influences()), maps);
+    const LeafPlace place = errors_of(nodes, leaf, static_cast<float>(in.vertex_error));
+    if (!(place.error < infinity)) { // nothing is known of it
+        if (job.slot) {
+            std::fill_n(job.slot, leaf_slot_floats(L), 0.0f);
+            place_of(job.slot, L) = {{0, 0, 0}, infinity, infinity};
+        }
+        const std::size_t side = dop_side(in.kdop), axes = axes_of(in.kdop).size();
+        std::fill_n(job.dop, axes, infinity);
+        std::fill_n(job.dop + side, axes, infinity);
+        return;
+    }
     using D = typename Wide<L>::D;
     const D d;
-    constexpr std::size_t width = Wide<L>::width;
     Wide<L> p[3];
     for (std::size_t i = 0; i < Wide<L>::vectors; ++i) {
-        typename Wide<L>::V sum[3][4];
-        for (auto& row : sum)
-            for (auto& s : row)
-                s = hn::Zero(d);
-        for (std::size_t j = 0; j < leaf.nodes; ++j) {
-            const float* map = in.records + influence[2 * j] * in.record;
-            const auto w = hn::Load(d, weights + j * L + i * width);
-            for (std::size_t r = 0; r < 3; ++r)
-                for (std::size_t s = 0; s < 4; ++s)
-#if HWY_NATIVE_FMA
-                    sum[r][s] = hn::MulAdd(w, hn::Set(d, map[4 * r + s]), sum[r][s]);
-#else
-                    sum[r][s] = hn::Set(d, std::fma(hn::GetLane(w), map[4 * r + s], hn::GetLane(sum[r][s])));
-#endif
-        }
-        const auto x = hn::Load(d, value + i * width), y = hn::Load(d, value + L + i * width), z = hn::Load(d, value + 2 * L + i * width);
         auto fused = [&](auto a, auto b, auto c) HWY_ATTR {
 #if HWY_NATIVE_FMA
             return hn::MulAdd(a, b, c);
@@ -124,38 +209,39 @@ template <std::size_t L> void evaluate_leaf(const LeafInput& in, const LeafJob& 
             return hn::Set(d, std::fma(hn::GetLane(a), hn::GetLane(b), hn::GetLane(c)));
 #endif
         };
+        const std::size_t first = i * Wide<L>::width;
+        typename Wide<L>::V sum[3][4];
+        for (auto& row : sum)
+            for (auto& s : row)
+                s = hn::Zero(d);
+        for (std::size_t j = 0; j < leaf.nodes; ++j) {
+            const float* map = maps + 16 * j;
+            const auto w = hn::Load(d, weights + j * L + first);
+#pragma GCC unroll 3
+            for (std::size_t r = 0; r < 3; ++r)
+#pragma GCC unroll 4
+                for (std::size_t s = 0; s < 4; ++s)
+                    sum[r][s] = fused(w, hn::Set(d, map[4 * r + s]), sum[r][s]);
+        }
+        const auto x = hn::Load(d, value + first), y = hn::Load(d, value + L + first), z = hn::Load(d, value + 2 * L + first);
+#pragma GCC unroll 3
         for (std::size_t r = 0; r < 3; ++r)
             p[r].v[i] = fused(sum[r][0], x, fused(sum[r][1], y, fused(sum[r][2], z, sum[r][3])));
     }
-    const Magnitudes m = magnitudes(in, influence, leaf.nodes);
-    const float error = m.known ? position_error(m, leaf, static_cast<float>(in.vertex_error)) : infinity;
-    job.slot[9 * L] = error;
-    if (!(error < infinity)) { // nothing is known of it
-        std::fill_n(job.slot, 9 * L, 0.0f);
-        job.slot[9 * L] = infinity;
-        const std::size_t side = dop_side(in.kdop), axes = axes_of(in.kdop).size();
-        std::fill_n(job.dop, axes, infinity);
-        std::fill_n(job.dop + side, axes, infinity);
+    bound_vertices<L>(in, p, place, job.dop);
+    if (!job.slot)
         return;
-    }
-    bound_vertices<L>(in, p, error, job.dop);
-    HWY_ALIGN float place[3][L];
-    for (std::size_t r = 0; r < 3; ++r)
-        p[r].store(place[r]);
-    const auto* corner = reinterpret_cast<const std::uint8_t*>(value + run.corners());
-    for (std::size_t c = 0; c < 3; ++c)
-        for (std::size_t r = 0; r < 3; ++r)
-            for (std::size_t t = 0; t < L; ++t)
-                job.slot[(3 * c + r) * L + t] = place[r][corner[c * L + t]];
+    place_corners<L>(p, reinterpret_cast<const std::uint8_t*>(value + run.corners()), job.slot);
+    place_of(job.slot, L) = place;
 }
 
-void evaluate_list(const LeafInput& in, std::span<const LeafJob> jobs)
+void evaluate_list(const LeafInput& in, std::span<const LeafJob> jobs, float* maps)
 {
-    for (std::size_t i = 0; i < jobs.size(); ++i)
+    for (const LeafJob& job : jobs)
         switch (in.lanes) {
-        case 4: evaluate_leaf<4>(in, jobs[i]); break;
-        case 8: evaluate_leaf<8>(in, jobs[i]); break;
-        default: evaluate_leaf<16>(in, jobs[i]); break;
+        case 4: evaluate_leaf<4>(in, job, maps); break;
+        case 8: evaluate_leaf<8>(in, job, maps); break;
+        default: evaluate_leaf<16>(in, job, maps); break;
         }
 }
 
@@ -168,9 +254,15 @@ HWY_EXPORT(evaluate_list);
 
 void evaluate_leaves(const LeafInput& input, std::span<const LeafJob> jobs)
 {
+    static thread_local AlignedVector<float> maps; // of one leaf's nodes
+    std::size_t most = 0;
+    for (const LeafJob& job : jobs)
+        most = std::max<std::size_t>(most, input.leaves[job.leaf].nodes);
+    if (maps.size() < 16 * most)
+        maps.resize(16 * most);
     LeafInput in = input;
     in.vertex_error = static_cast<double>(succ(static_cast<float>(input.vertex_error)));
-    HWY_DYNAMIC_DISPATCH(evaluate_list)(in, jobs);
+    HWY_DYNAMIC_DISPATCH(evaluate_list)(in, jobs, maps.data());
 }
 
 } // namespace cinch

@@ -8,15 +8,16 @@
 namespace cinch {
 
 /// The rest data of a leaf in a run of floats, with room for `lanes` vertices and triangles (the last vertex repeated to fill them):
-///   x, y, z relative to the rest origin     3 × lanes floats
+///   x, y, z relative to the pivot           3 × lanes floats
 ///   the three corners of every triangle     3 × lanes bytes, places among the vertices
-///   per simulation node its index, and its greatest weight    2 words each
+///   per simulation node, the heaviest first, its index, its greatest weight h, by how much weights differ r ≤ h, nothing    4 words each
 ///   per simulation node the vertices' weights                 lanes floats each, from a multiple of `lanes` on
 struct PackedLeaf {
     std::uint64_t first = 0;          ///< of its run
     std::uint32_t nodes = 0;          ///< simulation nodes
     std::uint32_t first_triangle = 0; ///< in Bvh::triangle
     std::uint32_t triangles = 0, vertices = 0;
+    float pivot[3] = {0, 0, 0};       ///< relative to the rest origin
     float reach[3] = {0, 0, 0};       ///< at least |x|, |y|, |z| of every vertex
 };
 
@@ -26,13 +27,20 @@ struct LeafRun {
 
     std::size_t corners() const { return 3 * lanes; }
     std::size_t influences() const { return corners() + 3 * lanes / 4; }
-    std::size_t weights() const { return (influences() + 2 * nodes + lanes - 1) / lanes * lanes; }
+    std::size_t weights() const { return (influences() + 4 * nodes + lanes - 1) / lanes * lanes; }
     std::size_t size() const { return weights() + nodes * lanes; }
 };
 
-/// A deformed leaf: the corners of its triangles, floats relative to the body's origin: 3 corners × 3 coordinates × lanes; then in the
-/// first of another `lanes` floats how far any coordinate is at most from that of evaluate_vertex: +∞ if nothing is known of it.
-constexpr std::size_t leaf_slot_floats(std::size_t lanes) { return 10 * lanes; }
+/// A deformed leaf: the corners of its triangles relative to a reference point of its own, 3 corners × 3 coordinates × lanes floats; then
+/// the reference point relative to the body's origin, and two errors. With P the vertex of evaluate_vertex or the exact one, p the corner
+/// and R the reference: |P − (R + p)| ≤ error, and |(P − P′) − (p − p′)| ≤ difference for any two vertices, in every coordinate. +∞ if
+/// nothing is known of it.
+struct LeafPlace {
+    float reference[3], error, difference;
+};
+constexpr std::size_t leaf_slot_floats(std::size_t lanes) { return 9 * lanes + (lanes > 8 ? lanes : 8); }
+inline LeafPlace& place_of(float* slot, std::size_t lanes) { return *reinterpret_cast<LeafPlace*>(slot + 9 * lanes); }
+inline const LeafPlace& place_of(const float* slot, std::size_t lanes) { return *reinterpret_cast<const LeafPlace*>(slot + 9 * lanes); }
 
 struct LeafInput {
     std::size_t lanes = 16; ///< 4, 8 or 16
@@ -46,16 +54,20 @@ struct LeafInput {
 
 struct LeafJob {
     std::uint32_t leaf;
-    float* slot; ///< on a cache line
+    float* slot; ///< on a cache line; null if only the supports are wanted
     float* dop;  ///< see dop.hpp
 };
 
 /// Deforms leaves, and bounds them by their vertices. The supports contain the vertices of evaluate_vertex and the exactly deformed ones.
-/// The same bits on every target. Error of a coordinate, with u = 2^-24, n the leaf's nodes and w ≤ h their weights: a leaf w·A·x of
-/// Σ_j w_j (A_j x + d_j), summed over the nodes first, passes 3 roundings to float (and one of a difference in double, far less), n in the
-/// sum and 3 in the product with x; d's passes 2 + n. So it is within γ_{n+6} of max_r Σ_j h_j (Σ_s |A_rs| reach_s + |d_r|) =: N.
-/// N is computed with n + 6 roundings: for n ≤ 65536 (n + 8)·1.02·u·N covers both. Products and conversions that underflow lose η/2
-/// each: 2^-149·(n + 8)(1 + Σ reach + Σ h|A|).
+/// The same bits on every target. With z the pivot and y = x − z, Y_j = A_j z + d_j the images of the pivot and R = Y_0 as computed:
+///   P = R + Σ_j w_j (A_j y + U_j),  U_j = Y_j − R, as Σ w = 1.
+/// What differs between the nodes is small, and so are its errors. u = 2^-24, n nodes, |·| per coordinate:
+///   Y_j: A z passes one rounding to float (and one to double, far less), one of the product and two of the sum, d two to float and two of
+///     the sum: within γ₅ of N_j = |A_j||z| + |d_j|; U_j then adds u|U_j|. Together Σ w_j 6u N_j ≤ 6u Σ h_j N_j of P, and
+///     6u Σ r_j N_j of a difference of two;
+///   Σ w (A y + U): 3 roundings to float, n in the sum, 3 in the product with y, 1 for U_j's own: γ_{n+7} of M = Σ h_j (|A_j| reach + |U_j|).
+/// For n ≤ 65536 a factor 1.02 covers higher orders and the n + 5 roundings of N and M themselves. Products and conversions that underflow
+/// lose η/2 each: 2^-148·(n + 8)(1 + Σ(|z| + reach) + Σ h|A|) is more.
 void evaluate_leaves(const LeafInput& input, std::span<const LeafJob> jobs);
 
 } // namespace cinch

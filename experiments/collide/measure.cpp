@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/collide/measure.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "experiments/report/interrupt.hpp"
+#include "experiments/report/progress.hpp"
+
+namespace cinch {
+namespace {
+
+double median(std::vector<double> all)
+{
+    const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
+    std::nth_element(all.begin(), middle, all.end());
+    return all.empty() ? 0 : *middle;
+}
+
+// More than any cache holds, read and written.
+void evict_caches()
+{
+    static std::vector<std::uint64_t> other(16u << 20); // 128 MB
+    for (std::size_t i = 0; i < other.size(); i += 8)
+        other[i] += i;
+}
+
+struct Times {
+    std::vector<double> evaluate, update, query, total; // per round
+};
+
+struct Contestant {
+    std::unique_ptr<Backend> backend;
+    std::vector<Times> frames;
+    std::vector<double> pairs;
+    Measured out;
+    bool slow = false;
+};
+
+void add(QueryCounts& sum, const QueryCounts& c)
+{
+    sum.body_pairs += c.body_pairs;
+    sum.box_tests += c.box_tests;
+    sum.leaf_pairs += c.leaf_pairs;
+    sum.triangle_tests += c.triangle_tests;
+    sum.in_double += c.in_double;
+    sum.in_exact += c.in_exact;
+    sum.updates.bounds += c.updates.bounds;
+    sum.updates.leaves += c.updates.leaves;
+    sum.updates.vertices += c.updates.vertices;
+    sum.updates.merged += c.updates.merged;
+}
+
+// One frame, step by step. The first round also compares and counts.
+void run_frame(Contestant& c, std::size_t frame, bool cold, std::vector<TrianglePair>& pairs)
+{
+    using Clock = std::chrono::steady_clock;
+    auto ms = [](Clock::time_point from, Clock::time_point to) { return std::chrono::duration<double, std::milli>(to - from).count(); };
+    if (cold)
+        evict_caches();
+    pairs.clear();
+    const auto start = Clock::now();
+    c.backend->evaluate(frame);
+    const auto evaluated = Clock::now();
+    c.backend->update();
+    const auto updated = Clock::now();
+    c.backend->query(pairs);
+    const auto end = Clock::now();
+    Times& t = c.frames[frame];
+    t.evaluate.push_back(ms(start, evaluated));
+    t.update.push_back(ms(evaluated, updated));
+    t.query.push_back(ms(updated, end));
+    t.total.push_back(ms(start, end));
+}
+
+} // namespace
+
+std::vector<Measured> measure(const CollideScene& scene, const std::vector<BackendKind>& kinds, const MeasureOptions& options)
+{
+    std::vector<std::vector<TrianglePair>> expected(scene.frames()); // of the first one
+    std::vector<Contestant> all;
+    std::vector<TrianglePair> pairs;
+    Progress progress(scene.name, kinds.size() * options.rounds);
+    std::size_t done = 0;
+    for (std::size_t round = 0; round < options.rounds; ++round)
+        for (std::size_t k = 0; k < kinds.size() && !interrupted(); ++k) {
+            if (round == 0) {
+                Contestant& made = all.emplace_back();
+                made.backend = kinds[k].make(scene);
+                made.frames.resize(scene.frames());
+                made.out.backend = kinds[k].name;
+            }
+            Contestant& c = all[k];
+            for (std::size_t f = 0; f < scene.frames() && !(round > 0 && c.slow) && !interrupted(); ++f) {
+                run_frame(c, f, options.cold, pairs);
+                if (round > 0)
+                    continue;
+                c.slow |= c.frames[f].total[0] > options.slow_ms;
+                c.pairs.push_back(static_cast<double>(pairs.size()));
+                if (const QueryCounts* counts = c.backend->counts()) {
+                    c.out.counts = true;
+                    add(c.out.sums, *counts);
+                }
+                std::sort(pairs.begin(), pairs.end());
+                if (k == 0) {
+                    expected[f] = pairs;
+                } else {
+                    std::vector<TrianglePair> different;
+                    std::set_symmetric_difference(pairs.begin(), pairs.end(), expected[f].begin(), expected[f].end(), std::back_inserter(different));
+                    c.out.differing += different.size();
+                }
+            }
+            progress.done(++done);
+        }
+    std::vector<Measured> results;
+    for (Contestant& c : all) {
+        std::vector<double> evaluate, update, query;
+        for (const Times& t : c.frames) {
+            if (t.total.empty())
+                continue;
+            evaluate.push_back(median(t.evaluate));
+            update.push_back(median(t.update));
+            query.push_back(median(t.query));
+            c.out.total_of_frame.push_back(median(t.total));
+        }
+        c.out.frames = c.out.total_of_frame.size();
+        c.out.evaluate_ms = median(evaluate);
+        c.out.update_ms = median(update);
+        c.out.query_ms = median(query);
+        c.out.total_ms = median(c.out.total_of_frame);
+        c.out.pairs = median(c.pairs);
+        c.out.megabytes_x10 = c.backend->bytes() / 100000;
+        results.push_back(std::move(c.out));
+    }
+    return results;
+}
+
+} // namespace cinch
