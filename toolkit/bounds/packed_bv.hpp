@@ -8,22 +8,26 @@
 
 namespace cinch {
 
-/// Simulation nodes and points stand in blocks of 8, one virtual lane each; the last one is repeated, with no weight, to fill a block.
+/// The kinds for many simulation nodes take them in blocks of 8, one virtual lane each; the last one is repeated, with no weight, to fill a
+/// block. Those for few take them one by one. Points stand in blocks of 4, the last one repeated.
 inline constexpr std::size_t block_lanes = 8;
 constexpr std::size_t blocks_of(std::size_t count) { return (count + block_lanes - 1) / block_lanes; }
+constexpr std::size_t quads_of(std::size_t points) { return (points + 3) / 4; }
+constexpr bool takes_one_by_one(Method kind) { return kind == Method::support || kind == Method::linear; }
 
 /// One BV as the kernels read it: rest data in T (float or double), rounded outward, relative to a rest origin that all BVs of a
-/// tree share. Its simulation nodes and values stand in two contiguous runs. Values: per block of extreme points their x, y and z
-/// relative to the pivot, 8 each; then per block of simulation nodes 8 each of what the kind needs:
+/// tree share. Its simulation nodes and values stand in two contiguous runs. Values of the kinds for many, per block of simulation nodes
+/// 8 each of:
 ///   convex, eq12, limited   l, r
 ///   local                   l, r, centre (3), half (3), radius: the box cut by a ball about its centre
-///   support                 l, r, centre (3), half (3), mean
-///   linear                  mean, gradient (3), residual, moment (3)
+/// Of those for few, per block of extreme points the x of 4 points relative to the pivot, their y and their z; then per simulation node:
+///   support                 centre (3), 1, half (3), 0, l, r, mean, 0
+///   linear                  gradient (3), residual, moment (3), mean
 /// with r = h − l. The real weights lie in [l, l + r], and Σ mean = 1 exactly.
 template <class T> struct PackedBv {
     Method kind = Method::convex; ///< convex, eq12, limited, local, support or linear
     std::uint32_t count = 0;      ///< simulation nodes
-    std::uint32_t points = 0;     ///< extreme points; 0 for kinds that have no use for them
+    std::uint32_t points = 0;     ///< extreme points; 0 for the kinds for many
     std::uint32_t first_node = 0;
     std::uint32_t also = 0;       ///< place of a second bound of the same BV to intersect with; 0 if there is none
     std::uint64_t first_value = 0;
@@ -36,10 +40,8 @@ template <class T> struct PackedBv {
     T start = 0;                    ///< λ begins at mean b + start·(greatest b − mean b)
     T error_factor = 1;             ///< of the per-node error, see rounding.hpp
 
-    static constexpr std::size_t rows(Method kind)
-    {
-        return kind == Method::linear ? 8 : kind == Method::local || kind == Method::support ? 9 : 2;
-    }
+    static constexpr std::size_t rows(Method kind) { return kind == Method::local ? 9 : 2; }      ///< of a block; kinds for many
+    static constexpr std::size_t values(Method kind) { return kind == Method::support ? 12 : 8; } ///< of a simulation node; kinds for few
 };
 
 } // namespace cinch

@@ -59,7 +59,8 @@ inline double sum_error(double nodes, double absolute_sum) noexcept
 //   N_j ≥ Σ_s a_s X_s + a_3,   a_s = Σ_r |γ_r A_rs|,   a_3 = Σ_r |γ_r d_r|,   X_s ≥ |x_s − o_s| over every box,
 // and N its maximum over the BV's nodes; |q̄_s|, |θ̄| are at most 1.01 times their maxima, since Σm = 1 and sums of T's are within 1/100.
 //   stored q, θ: 2 and 3 double roundings of sums of ≤ 3, and one to T: 3u N;
-//   b̂ = (dq·c + dθ) ± |dq|·e with dq = q − q̄: 1 (difference) + 3 (fma) + 1 roundings on ≤ N + 1.01 N: γ₅·2.01 N < 10.3u N;
+//   b̂ = (dq·c + dθ) ± |dq|·e with dq = q − q̄: 1 (difference) + 3 (fma) + 1 roundings on ≤ N + 1.01 N: γ₅·2.01 N < 10.3u N; or by
+//   rows, 1 (difference) + 1 (product) + 1 (±) + 2 (sum of four), the same;
 //   over an oriented box |q·a_1| + |q·a_2| + |q·a_3| instead: 3 + 2 roundings, and a in T is off by u|a|: γ₇N + 3uN, X taking in Σ|a|;
 //   reference: q̄·z + θ̄ and the points' q̄·y, with |z| ≤ X and |y| ≤ 2X: 3 roundings on ≤ 3.03 N: 10u N. The slack has its own
 //   rounding in it, and sums of these are rounded up.
@@ -79,28 +80,30 @@ template <class T> inline double node_error(double magnitude, double extent, dou
 
 /// The kernels add in 8 virtual lanes, node j in lane j mod 8, and then in a tree: a term of n passes at most this many roundings.
 inline double sum_depth(std::size_t nodes) noexcept { return std::ceil(static_cast<double>(nodes) / 8) + 3; }
+/// Those that take nodes one by one add alternately into two sums.
+inline double row_depth(std::size_t nodes) noexcept { return std::ceil(static_cast<double>(nodes) / 2) + 1; }
 
 /// The kernels' Σ l·a + Σ r·max(a, 0), a = fl(b̂ − λ), is off by at most factor·(width + fl Σ r·max(a, 0)) + underflow, width the computed
 /// max |a|: the greatest b̂ − λ and λ + the greatest b̂ against the axis bound it, as b̂₊ ≥ p ≥ −b̂₋ and rounding is monotonic. A
-/// term passes 1 (−) + m (sum) + 1 (+) roundings, Σ l ≤ 1, exact Σ r·max(a, 0) ≤ computed/(1 − γ_{m+1}) + nη:
+/// term passes 1 (−) + m (sum, `depth`) + 1 (+) roundings, Σ l ≤ 1, exact Σ r·max(a, 0) ≤ computed/(1 − γ_{m+1}) + nη:
 /// γ_{m+2}/(1 − γ_{m+1}) < (1.02m + 3)u for m·u ≤ 1/200; 5u are left for its own roundings.
-template <class T> inline T dual_sum_factor(std::size_t nodes) noexcept
+template <class T> inline T dual_sum_factor(double depth) noexcept
 {
-    return static_cast<T>((1.02 * sum_depth(nodes) + 8) * static_cast<double>(unit_roundoff_of<T>));
+    return static_cast<T>((1.02 * depth + 8) * static_cast<double>(unit_roundoff_of<T>));
 }
 template <class T> inline T dual_sum_underflow(std::size_t nodes) noexcept { return static_cast<T>(2 * nodes) * smallest_subnormal_of<T>; }
 /// Most simulation nodes of a BV for the kernels in float, so that m·u ≤ 1/200 here, and less than 1/100 above.
 inline constexpr std::size_t most_nodes_in_float = 65536;
 
-/// By how much a BV of the linear kind multiplies its nodes' errors. With m = sum_depth, κ = Σ_jΣ_i|g_ji| max|y_i| + Σ_j residual_j +
+/// By how much a BV of the linear kind multiplies its nodes' errors. With m = row_depth, κ = Σ_jΣ_i|g_ji| max|y_i| + Σ_j residual_j +
 /// Σ_j max_i moment_ji/X_i, and |dq·x + dθ| ≤ 2.01 N:
 ///   q̄ against Σ m q: (m + 1)u N; P = dq·z + dθ: 4 roundings, 9u N κ; the sums over the nodes of P·g, residual·|P| and
-///   moment·|dq|, the last with three terms a node: (3m + 2)u·2.01 N κ; support of q̄ + ΣP g: 4 roundings on ≤ (3.03 + 4.02κ) N.
-/// Together ≤ ((m + 35) + κ(6.03m + 40))u N, in units of 48u N. [checked in exact arithmetic]
+///   moment·|dq|, and of the last three: (m + 3)u·2.01 N κ each; support of q̄ + ΣP g: 4 roundings on ≤ (3.03 + 4.02κ) N.
+/// Together ≤ ((m + 35) + κ(6.03m + 44))u N, in units of 48u N.
 /// Products: 6 per node and coordinate lose ≤ η/2 each, over the 128η that a node's error has: n/16 more.
 inline double linear_error_factor(std::size_t nodes, double kappa) noexcept
 {
-    return 1 + static_cast<double>(nodes) / 16 + (sum_depth(nodes) + kappa * (6.5 * sum_depth(nodes) + 44)) / kernel_error_constant;
+    return 1 + static_cast<double>(nodes) / 16 + (row_depth(nodes) + kappa * (6.5 * row_depth(nodes) + 48)) / kernel_error_constant;
 }
 
 } // namespace cinch

@@ -66,17 +66,23 @@ public:
         bv_.count = static_cast<std::uint32_t>(rest.node.size());
         bv_.first_node = static_cast<std::uint32_t>(out_.node.size());
         bv_.first_value = out_.value.size();
-        order_octets_first(rest.node);
-        for (std::uint32_t j : order_)
-            out_.node.push_back(rest.node[j]);
-        out_.node.resize(bv_.first_node + blocks_of(rest.node.size()) * block_lanes, out_.node.back());
+        if (takes_one_by_one(kind)) {
+            out_.node.insert(out_.node.end(), rest.node.begin(), rest.node.end());
+        } else {
+            order_octets_first(rest.node);
+            for (std::uint32_t j : order_)
+                out_.node.push_back(rest.node[j]);
+            out_.node.resize(bv_.first_node + blocks_of(rest.node.size()) * block_lanes, out_.node.back());
+        }
         put_box(rest.box, out_.rest.origin, bv_.centre, bv_.half);
         if (oriented)
             put_oriented(*oriented);
-        if (kind == Method::support || kind == Method::linear)
+        if (takes_one_by_one(kind))
             put_points(rest);
         if (kind == Method::linear)
             put_models(rest);
+        else if (kind == Method::support)
+            put_reference(rest);
         else
             put_intervals(rest);
         out_.bvs.push_back(bv_);
@@ -126,12 +132,14 @@ private:
         }
         bv_.points = static_cast<std::uint32_t>(rest.point.size());
         Vec3 off = Vec3::Zero();
-        Blocks blocks(*this, rest.point.size(), 3);
+        const std::size_t first = out_.value.size();
+        out_.value.resize(first + 12 * quads_of(rest.point.size()));
         for (std::size_t i = 0; i < rest.point.size(); ++i)
             for (int s = 0; s < 3; ++s) {
                 const double o = out_.rest.origin[s], x = surface_.mesh.vertices[rest.point[i]][s] - o, y = x - static_cast<double>(bv_.pivot[s]);
                 const T packed = static_cast<T>(y);
-                blocks.put(i, static_cast<std::size_t>(s), packed, packed);
+                for (std::size_t p = i; p < (i + 1 == rest.point.size() ? 4 * quads_of(i + 1) : i + 1); ++p) // the last one to the end of its block
+                    out_.value[first + p / 4 * 12 + 4 * static_cast<std::size_t>(s) + p % 4] = packed;
                 const double rounding = unit_roundoff * (std::abs(y) + (o == 0 ? 0 : std::abs(x)));
                 off[s] = std::max(off[s], succ(std::abs(y - static_cast<double>(packed)) + succ(rounding)));
             }
@@ -139,33 +147,47 @@ private:
         bv_.slack = up<T>(succ(succ(rest.slack + succ(succ(off[0] + off[1]) + off[2])) * (1 + 16 * static_cast<double>(unit_roundoff_of<T>))));
     }
 
+    void put_interval(const RestBv& rest, std::size_t j, T& l, T& r)
+    {
+        l = down<T>(rest.space.l[j]);
+        r = up<T>(rest.space.h[j] - static_cast<double>(l)); // dyadic: exact
+        bv_.sum_l += l;
+        bv_.sum_r += r;
+    }
+
     void put_intervals(const RestBv& rest)
     {
-        const auto means = bv_.kind == Method::support ? rounded_means(rest) : std::vector<double>();
         Blocks blocks(*this, rest.node.size(), PackedBv<T>::rows(bv_.kind));
         for (std::size_t i = 0; i < rest.node.size(); ++i) {
             const std::size_t j = order_[i];
-            const T l = down<T>(rest.space.l[j]), r = up<T>(rest.space.h[j] - static_cast<double>(l)); // dyadic: exact
+            T l, r;
+            put_interval(rest, j, l, r);
             blocks.put(i, 0, l, 0);
             blocks.put(i, 1, r, 0);
-            bv_.sum_l += l;
-            bv_.sum_r += r;
-            if (bv_.kind != Method::local && bv_.kind != Method::support)
+            if (bv_.kind != Method::local)
                 continue;
             T box[6];
             put_box(rest.local[j], out_.rest.origin, box, box + 3);
             for (std::size_t s = 0; s < 6; ++s)
                 blocks.put(i, 2 + s, box[s], box[s]);
-            if (bv_.kind == Method::support) {
-                blocks.put(i, 8, static_cast<T>(means[j]), 0);
-            } else {
-                double radius = rest.radius[j]; // about the packed centre
-                for (int s = 0; s < 3; ++s)
-                    radius = sum_up(radius, shifted<T>(rest.local[j].centre[s], out_.rest.origin[s]).off);
-                // ν·radius is rounded once more.
-                const T packed = up<T>(radius == 0 ? 0 : succ(radius * (1 + 4 * static_cast<double>(unit_roundoff_of<T>))));
-                blocks.put(i, 8, packed, packed);
-            }
+            double radius = rest.radius[j]; // about the packed centre
+            for (int s = 0; s < 3; ++s)
+                radius = sum_up(radius, shifted<T>(rest.local[j].centre[s], out_.rest.origin[s]).off);
+            // ν·radius is rounded once more.
+            const T packed = up<T>(radius == 0 ? 0 : succ(radius * (1 + 4 * static_cast<double>(unit_roundoff_of<T>))));
+            blocks.put(i, 8, packed, packed);
+        }
+    }
+
+    void put_reference(const RestBv& rest)
+    {
+        const auto means = rounded_means(rest);
+        for (std::size_t j = 0; j < rest.node.size(); ++j) {
+            T own[12] = {0, 0, 0, 1};
+            put_box(rest.local[j], out_.rest.origin, own, own + 4);
+            put_interval(rest, j, own[8], own[9]);
+            own[10] = static_cast<T>(means[j]);
+            out_.value.insert(out_.value.end(), own, own + 12);
         }
     }
 
@@ -173,18 +195,16 @@ private:
     void put_models(const RestBv& rest)
     {
         const auto means = rounded_means(rest);
-        Blocks blocks(*this, rest.node.size(), PackedBv<T>::rows(Method::linear));
         double kappa = 0;
         Vec3 reach; // of |y| about the pivot
         for (int s = 0; s < 3; ++s)
             reach[s] = sum_up(up_product(std::abs(static_cast<double>(bv_.centre[s]) - static_cast<double>(bv_.pivot[s])), 1 + 4 * unit_roundoff),
                               static_cast<double>(bv_.half[s]));
-        for (std::size_t i = 0; i < rest.node.size(); ++i) {
-            const std::size_t j = order_[i];
+        for (std::size_t j = 0; j < rest.node.size(); ++j) {
             const WeightModel& model = rest.model[j];
             const double moved = std::abs(model.mean - means[j]); // dyadic: exact
             double residual = sum_up(model.residual, moved), moment_share = 0;
-            blocks.put(i, 0, static_cast<T>(means[j]), 0);
+            T own[8];
             for (int s = 0; s < 3; ++s) {
                 const T gradient = static_cast<T>(model.gradient[s]);
                 const double g = static_cast<double>(gradient), change = std::abs(model.gradient[s] - g);
@@ -194,11 +214,13 @@ private:
                 kappa += std::abs(g) * reach[s];
                 if (m > 0)
                     moment_share = std::max(moment_share, m / out_.rest.about_origin[s]);
-                blocks.put(i, 1 + static_cast<std::size_t>(s), gradient, 0);
-                blocks.put(i, 5 + static_cast<std::size_t>(s), up<T>(m), 0);
+                own[s] = gradient;
+                own[4 + s] = up<T>(m);
             }
             kappa += residual + moment_share;
-            blocks.put(i, 4, up<T>(residual), 0);
+            own[3] = up<T>(residual);
+            own[7] = static_cast<T>(means[j]);
+            out_.value.insert(out_.value.end(), own, own + 8);
         }
         bv_.error_factor = up<T>(linear_error_factor(rest.node.size(), kappa * (1 + 0x1p-20)));
     }

@@ -20,21 +20,24 @@
 
 #include "toolkit/bounds/kernel/dual-inl.hpp"
 #include "toolkit/bounds/kernel/linear-inl.hpp"
+#include "toolkit/bounds/kernel/support-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace cinch::HWY_NAMESPACE {
 
-// One BV's bound on its way: value and λ along and against the axes, and the reference map.
+// One BV's bound on its way: along and against the axes its value and, as long as somebody asks, λ; and the reference map.
 template <class T, std::size_t kAxes> struct Bound {
-    T value[2][kAxes], lambda[2][kAxes];
-    AxisMap<T, kAxes> reference;
+    alignas(64) T value[2][4 * row_chunks<kAxes> + 12]; // room to store all rows of the last chunk
+    T lambda[2][kAxes] = {};
+    alignas(64) T reference[4 * row_chunks<kAxes>][4] = {};
     T error; // the greatest of the BV's nodes
+    bool traced = false;
 };
 
 template <class T, std::size_t kAxes>
 void intersect(const KernelInput<T>& in, const PackedBv<T>& bv, const Extrema<T, kAxes>& e, const T (&lambda)[2][kAxes], const Dual<T, kAxes>& d, Bound<T, kAxes>& out)
 {
-    const T factor = dual_sum_factor<T>(bv.count), underflow = dual_sum_underflow<T>(bv.count);
+    const T factor = dual_sum_factor<T>(takes_one_by_one(bv.kind) ? row_depth(bv.count) : sum_depth(bv.count)), underflow = dual_sum_underflow<T>(bv.count);
     for (std::size_t s = 0; s < 2; ++s)
         for (std::size_t a = 0; a < kAxes; ++a) {
             const DualParts<T> parts{d.lower[s][a], d.upper[s][a], d.mass[s][a]};
@@ -63,11 +66,10 @@ void select_best(const PackedBv<T>& bv, const T* block, const T* b, std::vector<
         }
 }
 
-// λ near the best one by at most in.passes evaluations of D.
-template <class T, std::size_t kAxes>
-void search(const KernelInput<T>& in, const PackedBv<T>& bv, const T* block, const T* b, const Extrema<T, kAxes>& e, T* remembered, Bound<T, kAxes>& out)
+// λ near the best one by at most in.passes evaluations of D, which is evaluate<with its mass>(λ, D).
+template <class T, std::size_t kAxes, class Evaluate>
+void search(const KernelInput<T>& in, const PackedBv<T>& bv, const Extrema<T, kAxes>& e, T* remembered, Bound<T, kAxes>& out, const Evaluate& evaluate)
 {
-    constexpr std::size_t rows = PackedBv<T>::rows(Method::local);
     T lambda[2][kAxes];
     for (std::size_t s = 0; s < 2; ++s)
         for (std::size_t a = 0; a < kAxes; ++a) {
@@ -77,12 +79,12 @@ void search(const KernelInput<T>& in, const PackedBv<T>& bv, const T* block, con
         }
     Dual<T, kAxes> d;
     if (in.passes == 1 && !remembered) {
-        dual<T, kAxes, false>(bv, block, rows, b, lambda, d);
+        evaluate.template operator()<false>(lambda, d);
         return intersect<T, kAxes>(in, bv, e, lambda, d, out);
     }
     std::optional<TangentSearch<T>> tangents[2][kAxes];
     for (int pass = 0; pass < in.passes; ++pass) {
-        dual<T, kAxes, true>(bv, block, rows, b, lambda, d);
+        evaluate.template operator()<true>(lambda, d);
         intersect<T, kAxes>(in, bv, e, lambda, d, out);
         for (std::size_t s = 0; s < 2; ++s)
             for (std::size_t a = 0; a < kAxes; ++a) {
@@ -97,34 +99,33 @@ void search(const KernelInput<T>& in, const PackedBv<T>& bv, const T* block, con
     }
 }
 
-// The whole method: λ where the kind says, D there, and every such value intersected with the greatest b.
+// The greatest b, to be intersected with D where λ is best.
+template <class T, std::size_t kAxes> void begin(const Extrema<T, kAxes>& e, Bound<T, kAxes>& out)
+{
+    for (std::size_t s = 0; s < 2; ++s)
+        for (std::size_t a = 0; a < kAxes; ++a)
+            out.value[s][a] = out.lambda[s][a] = e.greatest[s][a];
+}
+
+// The kinds for many simulation nodes: λ where the kind says, D there, and every such value intersected with the greatest b.
 template <class T, std::size_t kAxes>
-void bound_by_duality(const KernelInput<T>& in, const PackedBv<T>& bv, T* remembered, KernelScratch<T>& scratch, Bound<T, kAxes>& out)
+void bound_by_blocks(const KernelInput<T>& in, const PackedBv<T>& bv, T* remembered, KernelScratch<T>& scratch, Bound<T, kAxes>& out)
 {
     const std::uint32_t* node = in.node.data() + bv.first_node;
-    const T* point = in.value.data() + bv.first_value;
-    const T* block = point + 3 * block_lanes * blocks_of(bv.points);
-    const std::size_t rows = PackedBv<T>::rows(bv.kind);
+    const T* block = in.value.data() + bv.first_value;
+    const std::size_t rows = PackedBv<T>::rows(bv.kind), extent = 2 * kAxes * block_lanes * blocks_of(bv.count);
+    if (scratch.b.size() < extent)
+        scratch.b.resize(extent);
     T* b = scratch.b.data();
 
     Extrema<T, kAxes> e;
-    switch (bv.kind) {
-    case Method::support:
-        mean_map<T, kAxes>(bv, *in.maps, node, block, rows, 8, scratch.transposed.data(), out.reference, out.error);
-        e.error = out.error;
-        extrema<T, kAxes, Boxes::less_reference, false>(bv, *in.maps, node, block, out.reference, scratch.transposed.data(), b, e);
-        break;
-    case Method::local: extrema<T, kAxes, Boxes::local, false>(bv, *in.maps, node, block, out.reference, nullptr, b, e); break;
-    default:
-        if (bv.oriented)
-            extrema<T, kAxes, Boxes::oriented, true>(bv, *in.maps, node, block, out.reference, nullptr, b, e);
-        else
-            extrema<T, kAxes, Boxes::common, true>(bv, *in.maps, node, block, out.reference, nullptr, b, e);
-        break;
-    }
-    out.error = e.error;
-    std::copy_n(&e.greatest[0][0], 2 * kAxes, &out.value[0][0]);
-    std::copy_n(&e.greatest[0][0], 2 * kAxes, &out.lambda[0][0]);
+    if (bv.kind == Method::local)
+        extrema<T, kAxes, Boxes::local, false>(bv, *in.maps, node, block, b, e, out.error);
+    else if (bv.oriented)
+        extrema<T, kAxes, Boxes::oriented, true>(bv, *in.maps, node, block, b, e, out.error);
+    else
+        extrema<T, kAxes, Boxes::common, true>(bv, *in.maps, node, block, b, e, out.error);
+    begin<T, kAxes>(e, out);
 
     Dual<T, kAxes> d;
     if (bv.kind == Method::eq12 || bv.kind == Method::limited) {
@@ -137,10 +138,64 @@ void bound_by_duality(const KernelInput<T>& in, const PackedBv<T>& bv, T* rememb
         dual<T, kAxes, false>(bv, block, rows, b, lambda, d);
         intersect<T, kAxes>(in, bv, e, lambda, d, out);
     }
-    if (bv.kind == Method::local || bv.kind == Method::support)
-        search<T, kAxes>(in, bv, block, b, e, remembered, out);
-    if (bv.kind == Method::support)
-        add_rest_support<T, kAxes>(bv, point, out.reference, out.reference, in.rounding, out.value);
+    if (bv.kind == Method::local)
+        search<T, kAxes>(in, bv, e, remembered, out, [&]<bool kMass>(const T (&at)[2][kAxes], Dual<T, kAxes>& own) {
+            dual<T, kAxes, kMass>(bv, block, rows, b, at, own);
+        });
+}
+
+// The kinds for few.
+template <class T, std::size_t kAxes>
+void bound_by_rows(const KernelInput<T>& in, const PackedBv<T>& bv, T* remembered, KernelScratch<T>& scratch, Bound<T, kAxes>& out)
+{
+    constexpr std::size_t chunks = row_chunks<kAxes>;
+    const std::uint32_t* node = in.node.data() + bv.first_node;
+    const T* point = in.value.data() + bv.first_value;
+    const T* value = point + 12 * quads_of(bv.points);
+    AxisMap<T, kAxes> reference;
+    Sides<T, kAxes> bound;
+    if (bv.kind == Method::linear) {
+        linear<T, kAxes>(bv, *in.maps, node, point, value, in.rounding, reference, bound, out.error);
+    } else {
+        if (scratch.b.size() < 32 * chunks * bv.count)
+            scratch.b.resize(32 * chunks * bv.count);
+        T* b = scratch.b.data();
+        mean_map<T, kAxes>(bv, *in.maps, node, value, PackedBv<T>::values(Method::support), support_mean, reference, out.error);
+        RowExtrema<T, kAxes> e;
+        support_extrema<T, kAxes>(bv, *in.maps, node, value, reference, b, e);
+        if (in.passes == 1 && !remembered) {
+            Rows<T> lambda[2][chunks];
+            support_in_one_pass<T, kAxes>(bv, value, b, e, in.rounding, bound, lambda);
+            if (out.traced)
+                to_array<T, kAxes>(lambda, out.lambda);
+        } else {
+            Extrema<T, kAxes> own;
+            to_array<T, kAxes>(e.greatest, own.greatest);
+            to_array<T, kAxes>(e.mean, own.mean);
+            begin<T, kAxes>(own, out);
+            search<T, kAxes>(in, bv, own, remembered, out, [&]<bool kMass>(const T (&at)[2][kAxes], Dual<T, kAxes>& d) {
+                Rows<T> lambda[2][chunks];
+                from_array<T, kAxes>(at, lambda);
+                RowDual<T, kAxes> parts;
+                support_dual<T, kAxes, kMass>(bv, value, b, lambda, parts);
+                to_array<T, kAxes>(parts.lower, d.lower);
+                to_array<T, kAxes>(parts.upper, d.upper);
+                if constexpr (kMass)
+                    to_array<T, kAxes>(parts.mass, d.mass);
+            });
+            for (std::size_t s = 0; s < 2; ++s)
+                for (std::size_t c = 0; c < chunks; ++c)
+                    bound.chunk[s][c] = Rows<T>::each_row(&out.value[s][4 * c]);
+        }
+        for (std::size_t c = 0; c < chunks; ++c)
+            add_rest_support(bv, point, reference.chunk[c], reference.chunk[c], in.rounding, bound.chunk[0][c], bound.chunk[1][c]);
+    }
+    for (std::size_t s = 0; s < 2; ++s)
+        for (std::size_t c = 0; c < chunks; ++c)
+            bound.chunk[s][c].store(&out.value[s][4 * c]); // what is too much, the next one overwrites
+    if (out.traced)
+        for (std::size_t c = 0; c < chunks; ++c)
+            reference.chunk[c].store(out.reference[4 * c]);
 }
 
 // What the errors of the BV's nodes add.
@@ -172,34 +227,39 @@ void finish(const KernelInput<T>& in, const PackedBv<T>& bv, const Bound<T, kAxe
         }
 }
 
-// The same as floats that stay relative to the body's origin: fl(x) is at least x(1 − u), and succ goes past x.
+// The same as floats that stay relative to the body's origin.
 template <class T, std::size_t kAxes>
 void finish(const KernelInput<T>& in, const PackedBv<T>& bv, const Bound<T, kAxes>& bound, std::size_t side, float* dop)
 {
     const double wider = widening<T, kAxes>(in, bv, bound);
-    for (std::size_t a = 0; a < kAxes; ++a)
-        for (std::size_t s = 0; s < 2; ++s) {
-            const float support = succ(static_cast<float>(succ(static_cast<double>(bound.value[s][a]) + wider)));
-            dop[s * side + a] = support < infinity_of<float> ? support : infinity_of<float>;
-        }
+    if constexpr (sizeof(T) == 4) {
+        const float by = succ(static_cast<float>(wider)); // fl(x) ≥ x(1 − u), and succ goes past x
+        for (std::size_t s = 0; s < 2; ++s)
+            for (std::size_t c = 0; c < row_chunks<kAxes>; ++c) {
+                const auto sum = next(Rows<float>::load(&bound.value[s][4 * c]) + Rows<float>::all(by));
+                HWY_ALIGN float own[16];
+                lesser(sum, Rows<float>::all(infinity_of<float>)).store(own);
+                for (std::size_t a = 4 * c; a < std::min(4 * c + 4, kAxes); ++a)
+                    dop[s * side + a] = own[a % 4];
+            }
+    } else {
+        for (std::size_t a = 0; a < kAxes; ++a)
+            for (std::size_t s = 0; s < 2; ++s) {
+                const float support = succ(static_cast<float>(succ(static_cast<double>(bound.value[s][a]) + wider)));
+                dop[s * side + a] = support < infinity_of<float> ? support : infinity_of<float>;
+            }
+    }
 }
 
 template <class T, std::size_t kAxes>
 void bound_one(const KernelInput<T>& in, std::size_t i, KernelScratch<T>& scratch, Bound<T, kAxes>& bound)
 {
     const PackedBv<T>& bv = in.bvs[i];
-    const std::size_t lanes = kAxes * block_lanes * blocks_of(bv.count);
-    if (scratch.b.size() < 2 * lanes)
-        scratch.b.resize(2 * lanes);
-    if ((bv.kind == Method::support || bv.kind == Method::linear) && scratch.transposed.size() < 4 * lanes)
-        scratch.transposed.resize(4 * lanes);
-    if (bv.kind == Method::linear) {
-        const T* point = in.value.data() + bv.first_value;
-        linear<T, kAxes>(bv, *in.maps, in.node.data() + bv.first_node, point, point + 3 * block_lanes * blocks_of(bv.points), in.rounding,
-                         scratch.transposed.data(), bound.reference, bound.value, bound.error);
-    } else {
-        bound_by_duality<T, kAxes>(in, bv, in.remembered ? in.remembered + i * 4 * kAxes : nullptr, scratch, bound);
-    }
+    T* remembered = in.remembered ? in.remembered + i * 4 * kAxes : nullptr;
+    if (takes_one_by_one(bv.kind))
+        bound_by_rows<T, kAxes>(in, bv, remembered, scratch, bound);
+    else
+        bound_by_blocks<T, kAxes>(in, bv, remembered, scratch, bound);
 }
 
 template <class T, std::size_t kAxes>
@@ -208,6 +268,7 @@ void bound_range(const KernelInput<T>& in, std::size_t first, std::size_t last, 
     for (std::size_t i = first; i < last; ++i, supports += 2 * kAxes) {
         const PackedBv<T>& bv = in.bvs[i];
         Bound<T, kAxes> bound;
+        bound.traced = trace != nullptr;
         bound_one<T, kAxes>(in, i, scratch, bound);
         finish<T, kAxes>(in, bv, bound, supports);
         if (trace) {
@@ -215,8 +276,8 @@ void bound_range(const KernelInput<T>& in, std::size_t first, std::size_t last, 
             for (std::size_t a = 0; a < kAxes; ++a) {
                 for (std::size_t s = 0; s < 2 && bv.kind != Method::linear; ++s)
                     trace->lambda[s][a] = bound.lambda[s][a];
-                if (bv.kind == Method::linear || bv.kind == Method::support)
-                    std::copy_n(bound.reference.of[a], 4, trace->reference[a]);
+                if (takes_one_by_one(bv.kind))
+                    std::copy_n(bound.reference[a], 4, trace->reference[a]);
             }
             ++trace;
         }

@@ -27,7 +27,7 @@ template <class T> struct KernelInput {
 
 /// Reused from call to call, so that bounding allocates nothing once warm.
 template <class T> struct KernelScratch {
-    AlignedVector<T> b, transposed;
+    AlignedVector<T> b;
     std::vector<std::pair<T, T>> select;
 };
 
@@ -38,7 +38,7 @@ template <class T> struct KernelTrace {
 
 /// Bounds BVs [first, last): supports[(bv − first)·k + d], d as in axes_of(k). With Rounding::proven each is an upper bound for every
 /// exactly deformed and every computed vertex. Whatever is not finite gives +∞. The arithmetic is IEEE with every operation
-/// and its order fixed: simulation nodes in 8 virtual lanes, fused multiply-adds included. The same bits on every target.
+/// and its order fixed: fused multiply-adds included. The same bits on every target.
 /// `trace`, if given, has one entry per BV.
 template <class T>
 void bound_packed(const KernelInput<T>& input, std::size_t first, std::size_t last, KernelScratch<T>& scratch, std::span<double> supports,

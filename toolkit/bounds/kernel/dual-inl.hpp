@@ -7,27 +7,20 @@
 #define CINCH_DUAL_INL
 #endif
 
-#include "toolkit/bounds/kernel/reference-inl.hpp"
+#include "toolkit/bounds/kernel/lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace cinch::HWY_NAMESPACE {
 
-/// Which boxes the extrema are over: the BV's, its oriented one, each node's cut by its ball, or each node's with the reference map taken off.
-enum class Boxes { common, oriented, local, less_reference };
-
-/// What one pass over the extrema leaves, per side and axis.
-template <class T, std::size_t kAxes> struct Extrema {
-    T greatest[2][kAxes], second[2][kAxes], mean[2][kAxes];
-    T error; ///< of the nodes; left alone by Boxes::less_reference
-};
+/// Which boxes the extrema are over: the BV's, its oriented one, or each node's cut by its ball.
+enum class Boxes { common, oriented, local };
 
 /// b̂_j of every simulation node along and against the axes, into b: per block and axis 8 along, then 8 against it. kSecond asks for
 /// the two greatest, otherwise it is the greatest and the mean weighted by r.
 template <class T, std::size_t kAxes, Boxes kBoxes, bool kSecond>
-void extrema(const PackedBv<T>& bv, const ProjectedMaps<T>& maps, const std::uint32_t* node, const T* block, const AxisMap<T, kAxes>& reference,
-             const T* transposed, T* b, Extrema<T, kAxes>& out)
+void extrema(const PackedBv<T>& bv, const ProjectedMaps<T>& maps, const std::uint32_t* node, const T* block, T* b, Extrema<T, kAxes>& out, T& error)
 {
-    constexpr bool kCommon = kBoxes == Boxes::common || kBoxes == Boxes::oriented;
+    constexpr bool kCommon = kBoxes != Boxes::local;
     constexpr std::size_t rows = PackedBv<T>::rows(kCommon ? Method::limited : Method::local);
     Lanes<T> most = Lanes<T>::all(0), first[2][kAxes], other[2][kAxes]; // greatest; second-greatest, or Σ r p and Σ r w
     for (std::size_t a = 0; a < kAxes; ++a) {
@@ -77,30 +70,20 @@ void extrema(const PackedBv<T>& bv, const ProjectedMaps<T>& maps, const std::uin
             }
         };
         Lanes<T> q[4];
-        if constexpr (kBoxes == Boxes::less_reference) {
+        with_maps<kAxes>(maps, node, [&](const auto& map) CINCH_FLATTEN {
+            most = greater(map.errors(), most);
+            Lanes<T> norm[kBoxes == Boxes::local ? kAxes / 4 * 4 + 4 : 1];
+            if constexpr (kBoxes == Boxes::local)
+                for (std::size_t a = 0; a <= kAxes; a += 4)
+                    map.rows(4 * kAxes + a, norm + a);
 #pragma GCC unroll 3
             for (std::size_t a = 0; a < kAxes; ++a) {
-                for (std::size_t s = 0; s < 4; ++s, transposed += block_lanes)
-                    q[s] = Lanes<T>::load(transposed) - Lanes<T>::all(reference.of[a][s]);
-                take(a, q, nullptr);
+                map.rows(4 * a, q);
+                take(a, q, norm);
             }
-        } else {
-            with_maps<kAxes>(maps, node, [&](const auto& map) CINCH_FLATTEN {
-                most = greater(map.errors(), most);
-                Lanes<T> norm[kBoxes == Boxes::local ? kAxes / 4 * 4 + 4 : 1];
-                if constexpr (kBoxes == Boxes::local)
-                    for (std::size_t a = 0; a <= kAxes; a += 4)
-                        map.rows(4 * kAxes + a, norm + a);
-#pragma GCC unroll 3
-                for (std::size_t a = 0; a < kAxes; ++a) {
-                    map.rows(4 * a, q);
-                    take(a, q, norm);
-                }
-            });
-        }
+        });
     }
-    if constexpr (kBoxes != Boxes::less_reference)
-        out.error = greatest(most);
+    error = greatest(most);
     const T range = sum(ranges);
     for (std::size_t a = 0; a < kAxes; ++a) {
         const T position = kSecond ? 0 : sum(other[0][a]), radius = kSecond ? 0 : sum(other[1][a]);
@@ -125,11 +108,7 @@ void extrema(const PackedBv<T>& bv, const ProjectedMaps<T>& maps, const std::uin
     }
 }
 
-/// D(λ) in parts: Σ l (b − λ), Σ r max(b − λ, 0) and, with kMass, Σ r over b > λ.
-template <class T, std::size_t kAxes> struct Dual {
-    T lower[2][kAxes], upper[2][kAxes], mass[2][kAxes];
-};
-
+/// D(λ) in parts, with kMass Σ r over b > λ too.
 template <class T, std::size_t kAxes, bool kMass, bool kLower>
 void dual(const PackedBv<T>& bv, const T* block, std::size_t rows, const T* b, const T (&lambda)[2][kAxes], Dual<T, kAxes>& out)
 {

@@ -12,6 +12,7 @@
 
 #include <hwy/highway.h>
 
+#include "toolkit/bounds/kernel/extrema-inl.hpp"
 #include "toolkit/bounds/packed_bv.hpp"
 #include "toolkit/bounds/projected_maps.hpp"
 #include "toolkit/bounds/rounding.hpp"
@@ -24,8 +25,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace cinch::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-
-template <class T> inline constexpr T infinity_of = std::numeric_limits<T>::infinity();
 
 /// 8 virtual lanes of T, as however many vectors the target needs. What is done to them is the same, lane by lane, everywhere.
 template <class T> struct Lanes {

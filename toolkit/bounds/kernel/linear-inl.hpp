@@ -7,7 +7,7 @@
 #define CINCH_LINEAR_INL
 #endif
 
-#include "toolkit/bounds/kernel/reference-inl.hpp"
+#include "toolkit/bounds/kernel/rows-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace cinch::HWY_NAMESPACE {
@@ -17,37 +17,34 @@ namespace cinch::HWY_NAMESPACE {
 ///       = q̄·z + θ̄ + (q̄ + Σ_j P_j g_j)·y + Σ_j ρ_j P_j + Σ_j (w_j − m_j)(q_j − q̄)·y,   P_j = (q_j − q̄)·z + θ_j − θ̄,
 /// so rest support of q̄ + Σ P_j g_j, then |ρ_j| ≤ residual_j and |(w_j − m_j) y| ≤ moment_j.
 template <class T, std::size_t kAxes>
-void linear(const PackedBv<T>& bv, const ProjectedMaps<T>& maps, const std::uint32_t* node, const T* point, const T* block, Rounding rounding, T* transposed,
-            AxisMap<T, kAxes>& mean, T (&bound)[2][kAxes], T& error)
+void linear(const PackedBv<T>& bv, const ProjectedMaps<T>& maps, const std::uint32_t* node, const T* point, const T* value, Rounding rounding, AxisMap<T, kAxes>& mean,
+            Sides<T, kAxes>& bound, T& error)
 {
-    constexpr std::size_t rows = PackedBv<T>::rows(Method::linear);
-    mean_map<T, kAxes>(bv, maps, node, block, rows, 0, transposed, mean, error);
-    Lanes<T> direction[kAxes][3], residual[kAxes], moment[kAxes];
-    for (std::size_t a = 0; a < kAxes; ++a)
-        direction[a][0] = direction[a][1] = direction[a][2] = residual[a] = moment[a] = Lanes<T>::all(0);
-    const auto z0 = Lanes<T>::all(bv.pivot[0]), z1 = Lanes<T>::all(bv.pivot[1]), z2 = Lanes<T>::all(bv.pivot[2]);
-    for (std::size_t i = 0; i < blocks_of(bv.count); ++i, block += rows * block_lanes) {
-        auto row = [&](std::size_t r) { return Lanes<T>::load(block + r * block_lanes); };
-        for (std::size_t a = 0; a < kAxes; ++a, transposed += 4 * block_lanes) {
-            Lanes<T> dq[4];
-            for (std::size_t s = 0; s < 4; ++s)
-                dq[s] = Lanes<T>::load(transposed + s * block_lanes) - Lanes<T>::all(mean.of[a][s]);
-            const auto p = fma(dq[0], z0, fma(dq[1], z1, fma(dq[2], z2, dq[3])));
-            for (std::size_t s = 0; s < 3; ++s) {
-                direction[a][s] = fma(p, row(1 + s), direction[a][s]);
-                moment[a] = fma(magnitude(dq[s]), row(5 + s), moment[a]);
-            }
-            residual[a] = fma(magnitude(p), row(4), residual[a]);
+    constexpr std::size_t stride = PackedBv<T>::values(Method::linear); // gradient (3), residual, moment (3), mean
+    mean_map<T, kAxes>(bv, maps, node, value, stride, 7, mean, error);
+    HWY_ALIGN const T pivot[4] = {bv.pivot[0], bv.pivot[1], bv.pivot[2], 1}, last[4] = {0, 0, 0, 1};
+    const auto z = Rows<T>::each_row(pivot), fourth = Rows<T>::each_row(last);
+    for (std::size_t c = 0; c < row_chunks<kAxes>; ++c) {
+        // Per row Σ P g, Σ |P| residual, and Σ |dq| moment; nodes alternately in two sums.
+        Rows<T> direction[2] = {Rows<T>::all(0), Rows<T>::all(0)}, moment[2] = {direction[0], direction[0]};
+        auto add = [&](std::size_t j, std::size_t to) HWY_ATTR {
+            const auto d = Rows<T>::load(map_of<T, kAxes>(maps, node[j]) + 16 * c) - mean.chunk[c], p = row_sum(d * z);
+            const auto p_or_size = each(p, fourth, [](auto x, auto f) { return hn::IfThenElse(hn::Gt(f, hn::Zero(typename Rows<T>::D())), hn::Abs(x), x); });
+            direction[to] = fma(p_or_size, Rows<T>::each_row(value + j * stride), direction[to]);
+            moment[to] = fma(magnitude(d), Rows<T>::each_row(value + j * stride + 4), moment[to]);
+        };
+        std::size_t j = 0;
+        for (; j + 1 < bv.count; j += 2) {
+            add(j, 0);
+            add(j + 1, 1);
         }
+        if (j < bv.count)
+            add(j, 0);
+        const auto d = direction[0] + direction[1], m = moment[0] + moment[1];
+        Rows<T>&along = bound.chunk[0][c], &against = bound.chunk[1][c];
+        along = against = up(column<3>(d) + ((column<0>(m) + column<1>(m)) + column<2>(m)), rounding);
+        add_rest_support(bv, point, mean.chunk[c], d + mean.chunk[c], rounding, along, against);
     }
-    AxisMap<T, kAxes> whole;
-    for (std::size_t a = 0; a < kAxes; ++a) {
-        for (std::size_t s = 0; s < 3; ++s)
-            whole.of[a][s] = sum(direction[a][s]) + mean.of[a][s];
-        const T rest = sum(residual[a]) + sum(moment[a]);
-        bound[0][a] = bound[1][a] = rounding == Rounding::proven ? succ(rest) : rest;
-    }
-    add_rest_support<T, kAxes>(bv, point, mean, whole, rounding, bound);
 }
 
 } // namespace cinch::HWY_NAMESPACE

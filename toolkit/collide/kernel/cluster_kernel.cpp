@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <utility>
 
 #include "toolkit/bounds/rounding.hpp"
 #include "toolkit/hierarchy/kernel/leaf_kernel.hpp"
@@ -17,29 +16,22 @@
 
 #include <hwy/highway.h>
 
-#include "toolkit/collide/kernel/certain_pair-inl.hpp"
-#include "toolkit/hierarchy/kernel/wide-inl.hpp"
+#include "toolkit/collide/kernel/pair_lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace cinch::HWY_NAMESPACE {
 
-/// The triangles of a leaf, one in a lane: corners, boxes, diagonals.
-template <std::size_t L> struct Cluster {
-    Wide<L> corner[3][3], low[3], high[3], diagonal;
+/// The boxes of a leaf's triangles, one in a lane.
+template <std::size_t L> struct Boxes {
+    Point<L> low, high;
 
-    HWY_INLINE Cluster(const float* slot, const float (&shift)[3])
+    HWY_INLINE Boxes(const float* slot, const float (&shift)[3])
     {
-        for (std::size_t c = 0; c < 3; ++c)
-            for (std::size_t r = 0; r < 3; ++r)
-                corner[c][r] = Wide<L>::load(slot + (3 * c + r) * L) + Wide<L>::all(shift[r]);
-        Wide<L> squared = Wide<L>::all(0);
         for (std::size_t r = 0; r < 3; ++r) {
-            low[r] = less(less(corner[0][r], corner[1][r]), corner[2][r]);
-            high[r] = greater(greater(corner[0][r], corner[1][r]), corner[2][r]);
-            const auto extent = high[r] - low[r];
-            squared = fma(extent, extent, squared);
+            const auto a = Wide<L>::load(slot + r * L), b = Wide<L>::load(slot + (3 + r) * L), c = Wide<L>::load(slot + (6 + r) * L), by = Wide<L>::all(shift[r]);
+            low[r] = less(less(a, b), c) + by;
+            high[r] = greater(greater(a, b), c) + by;
         }
-        diagonal = root(squared);
     }
     // Those whose box, grown by `wider`, meets a box.
     HWY_INLINE std::uint32_t meeting(const float (&box_low)[3], const float (&box_high)[3], float wider) const
@@ -51,57 +43,12 @@ template <std::size_t L> struct Cluster {
     }
     HWY_INLINE float furthest() const // coordinate
     {
-        Wide<L> most = Wide<L>::all(0);
+        auto most = Wide<L>::all(0);
         for (std::size_t r = 0; r < 3; ++r)
             most = greater(most, greater(magnitude(low[r]), magnitude(high[r])));
         return greatest(most);
     }
 };
-
-/// The planes of a leaf's triangles: normals, and the margins' parts that do not depend on what they are tested against.
-template <std::size_t L> struct Planes {
-    Wide<L> normal[3], length, h, bend; ///< length: |n|₁; bend: √3 (h (d + √3 h) + d h), at least
-
-    HWY_INLINE Planes(const Cluster<L>& c, float difference)
-    {
-        Wide<L> e[3], f[3];
-        for (std::size_t r = 0; r < 3; ++r) {
-            e[r] = c.corner[1][r] - c.corner[0][r];
-            f[r] = c.corner[2][r] - c.corner[0][r];
-        }
-        for (std::size_t r = 0; r < 3; ++r) {
-            const std::size_t s = (r + 1) % 3, t = (r + 2) % 3;
-            normal[r] = fms(e[s], f[t], e[t] * f[s]);
-        }
-        length = (magnitude(normal[0]) + magnitude(normal[1])) + magnitude(normal[2]);
-        h = fma(c.diagonal, Wide<L>::all(12 * unit_roundoff_of<float>), Wide<L>::all(difference));
-        bend = (h * Wide<L>::all(two_root_3)) * fma(h, Wide<L>::all(root_3), c.diagonal);
-    }
-};
-
-/// On which side certainly, a bit for each lane.
-struct Sides {
-    std::uint32_t above[3], below[3];
-
-    std::uint32_t apart() const { return (above[0] & above[1] & above[2]) | (below[0] & below[1] & below[2]); }
-    std::uint32_t certain() const { return (above[0] | below[0]) & (above[1] | below[1]) & (above[2] | below[2]); }
-    std::array<int, 3> signs(unsigned lane) const
-    {
-        std::array<int, 3> s;
-        for (std::size_t c = 0; c < 3; ++c)
-            s[c] = static_cast<int>(above[c] >> lane & 1) - static_cast<int>(below[c] >> lane & 1);
-        return s;
-    }
-};
-
-// n·(point − base) against margin, per lane.
-template <std::size_t L>
-HWY_INLINE void take_side(const Wide<L> (&normal)[3], const Wide<L> (&point)[3], const Wide<L> (&base)[3], const Wide<L>& margin, std::uint32_t& above, std::uint32_t& below)
-{
-    const auto along = fma(normal[0], point[0] - base[0], fma(normal[1], point[1] - base[1], normal[2] * (point[2] - base[2])));
-    above = bits_where_greater(along, margin);
-    below = bits_where_greater(Wide<L>::all(0) - along, margin);
-}
 
 /// b's place relative to a's reference point.
 struct Relative {
@@ -124,17 +71,30 @@ HWY_INLINE Relative relative(const ClusterInput& in, const ClusterPair& pair, co
     return out;
 }
 
+/// Candidates: triangle i[n] of a and j[n] of b, up to L².
+template <std::size_t L> struct Candidates {
+    std::size_t count = 0;
+    std::uint8_t i[L * L + L], j[L * L + L]; // and what fills the last lanes
+};
+
+template <std::size_t L> HWY_INLINE void gather(const float* slot, const std::uint8_t* lane, const float (&shift)[3], Triangles<L>& out)
+{
+    for (std::size_t c = 0; c < 3; ++c)
+        for (std::size_t r = 0; r < 3; ++r)
+            out.corner[c][r] = lookup<L>(slot + (3 * c + r) * L, lane) + Wide<L>::all(shift[r]);
+}
+
 template <std::size_t L> void test_pair(const ClusterInput& in, const ClusterPair& pair, std::uint32_t index, std::vector<TriangleHit>& out, std::uint64_t& tests)
 {
     constexpr float at_home[3] = {0, 0, 0};
     const LeafPlace &place_a = place_of(pair.slot_a, L), &place_b = place_of(pair.slot_b, L);
     const Relative to_b = relative(in, pair, place_a, place_b);
     // Which triangles of either meet the box of the other leaf.
-    const Cluster<L> a(pair.slot_a, at_home);
+    const Boxes<L> a(pair.slot_a, at_home);
     std::uint32_t of_a = a.meeting(to_b.low, to_b.high, place_a.error) & ((1u << pair.triangles_a) - 1);
     if (of_a == 0)
         return;
-    const Cluster<L> b(pair.slot_b, to_b.shift);
+    const Boxes<L> b(pair.slot_b, to_b.shift);
     const float rounding = 2 * unit_roundoff_of<float> * b.furthest(); // of the sums with the shift
     const float error_b = succ(succ(place_b.error + to_b.error) + rounding);
     float low[3], high[3];
@@ -147,70 +107,37 @@ template <std::size_t L> void test_pair(const ClusterInput& in, const ClusterPai
         return;
 
     const float s = succ(place_a.error + error_b);
-    const Planes<L> planes_a(a, place_a.difference), planes_b(b, succ(place_b.difference + rounding));
-    HWY_ALIGN float of_each[7][L]; // of a: normal, |n|₁, bend, diagonal, h
-    for (std::size_t r = 0; r < 3; ++r)
-        planes_a.normal[r].store(of_each[r]);
-    planes_a.length.store(of_each[3]);
-    planes_a.bend.store(of_each[4]);
-    a.diagonal.store(of_each[5]);
-    planes_a.h.store(of_each[6]);
+    Candidates<L> candidates;
+    HWY_ALIGN float box[6][L];
+    for (std::size_t r = 0; r < 3; ++r) {
+        a.low[r].store(box[r]);
+        a.high[r].store(box[3 + r]);
+    }
     for (; of_a != 0; of_a &= of_a - 1) {
-        const auto i = static_cast<unsigned>(std::countr_zero(of_a));
-        float p[3][3];
-        for (std::size_t c = 0; c < 3; ++c)
-            for (std::size_t r = 0; r < 3; ++r)
-                p[c][r] = pair.slot_a[(3 * c + r) * L + i];
+        const auto i = static_cast<std::size_t>(std::countr_zero(of_a));
         for (std::size_t r = 0; r < 3; ++r) {
-            low[r] = std::min(std::min(p[0][r], p[1][r]), p[2][r]);
-            high[r] = std::max(std::max(p[0][r], p[1][r]), p[2][r]);
+            low[r] = box[r][i];
+            high[r] = box[3 + r][i];
         }
-        std::uint32_t left = of_b & b.meeting(low, high, s);
-        if (left == 0)
-            continue;
-        tests += static_cast<std::uint64_t>(std::popcount(left));
-        const auto diagonal = b.diagonal + Wide<L>::all(of_each[5][i] + 2 * s); // D
-        const auto off = fma(diagonal, Wide<L>::all(unit_roundoff_of<float>), Wide<L>::all(s)); // g
-        const auto reach = fma(off, Wide<L>::all(root_3), diagonal);
-        const auto more = Wide<L>::all(margin_factor), least = Wide<L>::all(margin_underflow);
-        Sides sides_b, sides_a; // of b's corners to the plane of i, of i's corners to b's planes
-        {
-            const auto margin = fma(fma(off, Wide<L>::all(of_each[3][i]), reach * Wide<L>::all(of_each[4][i])), more, least);
-            const Wide<L> normal[3] = {Wide<L>::all(of_each[0][i]), Wide<L>::all(of_each[1][i]), Wide<L>::all(of_each[2][i])};
-            const Wide<L> base[3] = {Wide<L>::all(p[0][0]), Wide<L>::all(p[0][1]), Wide<L>::all(p[0][2])};
-            for (std::size_t c = 0; c < 3; ++c)
-                take_side<L>(normal, b.corner[c], base, margin, sides_b.above[c], sides_b.below[c]);
-            left &= ~sides_b.apart();
-            if (left == 0)
-                continue;
+        for (std::uint32_t left = of_b & b.meeting(low, high, s); left != 0; left &= left - 1) {
+            candidates.i[candidates.count] = static_cast<std::uint8_t>(i);
+            candidates.j[candidates.count++] = static_cast<std::uint8_t>(std::countr_zero(left));
         }
-        {
-            const auto margin = fma(fma(off, planes_b.length, reach * planes_b.bend), more, least);
-            for (std::size_t c = 0; c < 3; ++c) {
-                const Wide<L> point[3] = {Wide<L>::all(p[c][0]), Wide<L>::all(p[c][1]), Wide<L>::all(p[c][2])};
-                take_side<L>(planes_b.normal, point, b.corner[0], margin, sides_a.above[c], sides_a.below[c]);
-            }
-            left &= ~sides_a.apart();
-        }
-        if (left == 0)
-            continue;
-        const std::uint32_t certain = sides_a.certain() & sides_b.certain();
-        HWY_ALIGN float D[L], d[L], h[L];
-        diagonal.store(D);
-        b.diagonal.store(d);
-        planes_b.h.store(h);
-        for (; left != 0; left &= left - 1) {
-            const auto j = static_cast<unsigned>(std::countr_zero(left));
-            int answer = 0; // of certain_pair
-            if (certain >> j & 1) {
-                float q[3][3];
-                for (std::size_t c = 0; c < 3; ++c)
-                    for (std::size_t r = 0; r < 3; ++r)
-                        q[c][r] = pair.slot_b[(3 * c + r) * L + j] + to_b.shift[r];
-                answer = certain_pair(p, q, sides_a.signs(j), sides_b.signs(j), {s, D[j], of_each[5][i], of_each[6][i], d[j], h[j]});
-            }
-            if (answer >= 0)
-                out.push_back({index, static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(j), answer == 0});
+    }
+    tests += candidates.count;
+    std::fill_n(candidates.i + candidates.count, L, std::uint8_t{0});
+    std::fill_n(candidates.j + candidates.count, L, std::uint8_t{0});
+    for (std::size_t first = 0; first < candidates.count; first += L) {
+        Triangles<L> p, q;
+        gather<L>(pair.slot_a, candidates.i + first, at_home, p);
+        gather<L>(pair.slot_b, candidates.j + first, to_b.shift, q);
+        p.measure(place_a.difference);
+        q.measure(succ(place_b.difference + rounding));
+        const std::size_t left = candidates.count - first;
+        const Answer answer = intersect_lanes<L>(p, q, left >= L ? (1u << L) - 1 : (1u << left) - 1, s);
+        for (std::uint32_t some = answer.hits | answer.doubtful; some != 0; some &= some - 1) {
+            const auto lane = static_cast<std::size_t>(std::countr_zero(some));
+            out.push_back({index, candidates.i[first + lane], candidates.j[first + lane], (answer.doubtful >> lane & 1) != 0});
         }
     }
 }

@@ -158,26 +158,12 @@ template <std::size_t L> HWY_INLINE void bound_vertices(const LeafInput& in, con
 // Corners of triangles from the vertices.
 template <std::size_t L> HWY_INLINE void place_corners(const Wide<L> (&p)[3], const std::uint8_t* corner, float* slot)
 {
-#if HWY_TARGET != HWY_SCALAR
-    if constexpr (Wide<L>::vectors == 1 && L == 16) {
-        using D = typename Wide<L>::D;
-        const hn::RebindToSigned<D> di;
-        const hn::Rebind<std::uint8_t, D> d8;
-        for (std::size_t c = 0; c < 3; ++c) {
-            const auto index = hn::IndicesFromVec(D(), hn::PromoteTo(di, hn::LoadU(d8, corner + c * L)));
-            for (std::size_t r = 0; r < 3; ++r)
-                hn::Store(hn::TableLookupLanes(p[r].v[0], index), D(), slot + (3 * c + r) * L);
-        }
-        return;
-    }
-#endif
     HWY_ALIGN float place[3][L];
     for (std::size_t r = 0; r < 3; ++r)
         p[r].store(place[r]);
     for (std::size_t c = 0; c < 3; ++c)
         for (std::size_t r = 0; r < 3; ++r)
-            for (std::size_t t = 0; t < L; ++t)
-                slot[(3 * c + r) * L + t] = place[r][corner[c * L + t]];
+            lookup<L>(place[r], corner + c * L).store(slot + (3 * c + r) * L);
 }
 
 template <std::size_t L> void evaluate_leaf(const LeafInput& in, const LeafJob& job, float* maps)

@@ -111,6 +111,39 @@ template <std::size_t L> HWY_INLINE std::uint32_t bits_where_greater(const Wide<
     return bits;
 }
 
+/// a where the lane's bit is set, else b.
+template <std::size_t L> HWY_INLINE Wide<L> select(std::uint32_t bits, const Wide<L>& a, const Wide<L>& b)
+{
+    Wide<L> x;
+    for (std::size_t i = 0; i < Wide<L>::vectors; ++i) {
+        if constexpr (Wide<L>::width == 1) {
+            x.v[i] = bits >> i & 1 ? a.v[i] : b.v[i];
+        } else {
+            const std::uint32_t own = bits >> (i * Wide<L>::width);
+            const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(own), static_cast<std::uint8_t>(own >> 8)};
+            x.v[i] = hn::IfThenElse(hn::LoadMaskBits(typename Wide<L>::D(), bytes), a.v[i], b.v[i]);
+        }
+    }
+    return x;
+}
+
+/// Lane n is table[index[n]], table of L floats on a boundary of as many.
+template <std::size_t L> HWY_INLINE Wide<L> lookup(const float* table, const std::uint8_t* index)
+{
+#if HWY_TARGET != HWY_SCALAR
+    if constexpr (Wide<L>::vectors == 1 && L == 16) {
+        using D = typename Wide<L>::D;
+        const hn::RebindToSigned<D> di;
+        const hn::Rebind<std::uint8_t, D> d8;
+        return {{hn::TableLookupLanes(hn::Load(D(), table), hn::IndicesFromVec(D(), hn::PromoteTo(di, hn::LoadU(d8, index))))}};
+    }
+#endif
+    HWY_ALIGN float out[L];
+    for (std::size_t n = 0; n < L; ++n)
+        out[n] = table[index[n]];
+    return Wide<L>::load(out);
+}
+
 /// Of all lanes; NaN hides.
 template <std::size_t L> HWY_INLINE float greatest(const Wide<L>& a)
 {

@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: Apache-2.0
+// No #pragma once: compiled anew for every target.
+#if defined(CINCH_ROWS_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef CINCH_ROWS_INL
+#undef CINCH_ROWS_INL
+#else
+#define CINCH_ROWS_INL
+#endif
+
+#include <cmath>
+
+#include <hwy/highway.h>
+
+#include "toolkit/bounds/kernel/extrema-inl.hpp"
+#include "toolkit/bounds/packed_bv.hpp"
+#include "toolkit/bounds/projected_maps.hpp"
+#include "toolkit/bounds/rounding.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace cinch::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// 4 rows of 4 values of T, as however many vectors the target needs: of a projected map the rows q₀ q₁ q₂ θ of four axes. For BVs of few
+/// simulation nodes, which it takes as they stand. What is done is the same, lane by lane, everywhere.
+template <class T> struct Rows {
+    using D = hn::CappedTag<T, sizeof(T) == 4 ? 16 : 4>;
+    using V = hn::Vec<D>;
+    static constexpr std::size_t width = hn::MaxLanes(D()), vectors = 16 / width;
+
+    V v[vectors];
+
+    static HWY_INLINE Rows load(const T* p)
+    {
+        Rows x;
+        for (std::size_t i = 0; i < vectors; ++i)
+            x.v[i] = hn::LoadU(D(), p + i * width);
+        return x;
+    }
+    static HWY_INLINE Rows all(T value)
+    {
+        Rows x;
+        for (std::size_t i = 0; i < vectors; ++i)
+            x.v[i] = hn::Set(D(), value);
+        return x;
+    }
+    /// The same four values in every row.
+    static HWY_INLINE Rows each_row(const T* p)
+    {
+        Rows x;
+        for (std::size_t i = 0; i < vectors; ++i) {
+            if constexpr (width == 1)
+                x.v[i] = hn::Set(D(), p[i % 4]);
+            else if constexpr (sizeof(T) == 4)
+                x.v[i] = hn::LoadDup128(D(), p);
+            else
+                x.v[i] = hn::LoadU(D(), p + i * width % 4);
+        }
+        return x;
+    }
+    /// The a-th of four values all over row a.
+    static HWY_INLINE Rows each_column(const T* p)
+    {
+        Rows x;
+#if HWY_TARGET != HWY_SCALAR
+        if constexpr (width == 16) {
+            HWY_ALIGN constexpr std::int32_t column[16] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
+            x.v[0] = hn::TableLookupLanes(hn::LoadDup128(D(), p), hn::SetTableIndices(D(), column));
+            return x;
+        } else if constexpr (width == 8) {
+            const hn::Half<D> half;
+            for (std::size_t i = 0; i < vectors; ++i)
+                x.v[i] = hn::Combine(D(), hn::Set(half, p[2 * i + 1]), hn::Set(half, p[2 * i]));
+            return x;
+        }
+#endif
+        for (std::size_t i = 0; i < vectors; ++i) // no vector has more than a row
+            x.v[i] = hn::Set(D(), p[i * width / 4]);
+        return x;
+    }
+    HWY_INLINE void store(T* p) const
+    {
+        for (std::size_t i = 0; i < vectors; ++i)
+            hn::StoreU(v[i], D(), p + i * width);
+    }
+};
+
+template <class T, class F> HWY_INLINE Rows<T> each(const Rows<T>& a, F&& f)
+{
+    Rows<T> x;
+    for (std::size_t i = 0; i < Rows<T>::vectors; ++i)
+        x.v[i] = f(a.v[i]);
+    return x;
+}
+template <class T, class F> HWY_INLINE Rows<T> each(const Rows<T>& a, const Rows<T>& b, F&& f)
+{
+    Rows<T> x;
+    for (std::size_t i = 0; i < Rows<T>::vectors; ++i)
+        x.v[i] = f(a.v[i], b.v[i]);
+    return x;
+}
+template <class T> HWY_INLINE Rows<T> operator+(const Rows<T>& a, const Rows<T>& b) { return each(a, b, [](auto x, auto y) { return hn::Add(x, y); }); }
+template <class T> HWY_INLINE Rows<T> operator-(const Rows<T>& a, const Rows<T>& b) { return each(a, b, [](auto x, auto y) { return hn::Sub(x, y); }); }
+template <class T> HWY_INLINE Rows<T> operator*(const Rows<T>& a, const Rows<T>& b) { return each(a, b, [](auto x, auto y) { return hn::Mul(x, y); }); }
+template <class T> HWY_INLINE Rows<T> magnitude(const Rows<T>& a) { return each(a, [](auto x) { return hn::Abs(x); }); }
+/// Of numbers, as in lanes-inl.hpp.
+template <class T> HWY_INLINE Rows<T> greater(const Rows<T>& a, const Rows<T>& b) { return each(a, b, [](auto x, auto y) { return hn::Max(x, y); }); }
+/// x where a > 0, else 0.
+template <class T> HWY_INLINE Rows<T> where_positive(const Rows<T>& a, const Rows<T>& x)
+{
+    return each(a, x, [](auto p, auto y) { return hn::IfThenElseZero(hn::Gt(p, hn::Zero(typename Rows<T>::D())), y); });
+}
+
+/// a·b + c, rounded once: part of the definition of every result.
+template <class T> HWY_INLINE Rows<T> fma(const Rows<T>& a, const Rows<T>& b, const Rows<T>& c)
+{
+    Rows<T> x;
+    for (std::size_t i = 0; i < Rows<T>::vectors; ++i)
+#if HWY_NATIVE_FMA
+        x.v[i] = hn::MulAdd(a.v[i], b.v[i], c.v[i]);
+#else // the emulation would round twice
+        x.v[i] = hn::Set(typename Rows<T>::D(), std::fma(hn::GetLane(a.v[i]), hn::GetLane(b.v[i]), hn::GetLane(c.v[i])));
+    static_assert(Rows<T>::width == 1);
+#endif
+    return x;
+}
+
+/// In every lane the sum of its row, (0 + 1) + (2 + 3).
+template <class T> HWY_INLINE Rows<T> row_sum(const Rows<T>& x)
+{
+#if HWY_TARGET != HWY_SCALAR
+    if constexpr (sizeof(T) == 4) {
+        const auto pairs = each(x, [](auto v) { return hn::Add(v, hn::Shuffle2301(v)); });
+        return each(pairs, [](auto v) { return hn::Add(v, hn::Shuffle1032(v)); });
+    } else if constexpr (Rows<T>::width == 4) {
+        const auto pairs = each(x, [](auto v) { return hn::Add(v, hn::Shuffle01(v)); });
+        return each(pairs, [](auto v) { return hn::Add(v, hn::ConcatLowerUpper(typename Rows<T>::D(), v, v)); });
+    }
+#endif
+    HWY_ALIGN T lane[16];
+    x.store(lane);
+    for (std::size_t a = 0; a < 16; a += 4) {
+        const T sum = (lane[a] + lane[a + 1]) + (lane[a + 2] + lane[a + 3]);
+        for (std::size_t s = 0; s < 4; ++s)
+            lane[a + s] = sum;
+    }
+    return Rows<T>::load(lane);
+}
+
+#if HWY_TARGET != HWY_SCALAR
+template <class T> inline constexpr bool whole_in_one = Rows<T>::width == 16;
+#else
+template <class T> inline constexpr bool whole_in_one = false;
+#endif
+
+/// Column s of x as every row: what belongs to the axis of row a comes to lane a.
+template <std::size_t s, class T> HWY_INLINE Rows<T> column(const Rows<T>& x)
+{
+    if constexpr (whole_in_one<T>) {
+        HWY_ALIGN constexpr std::int32_t from[16] = {s, 4 + s, 8 + s, 12 + s, s, 4 + s, 8 + s, 12 + s, s, 4 + s, 8 + s, 12 + s, s, 4 + s, 8 + s, 12 + s};
+        return {{hn::TableLookupLanes(x.v[0], hn::SetTableIndices(typename Rows<T>::D(), from))}};
+    }
+    HWY_ALIGN T lane[16], out[16];
+    x.store(lane);
+    for (std::size_t i = 0; i < 16; ++i)
+        out[i] = lane[4 * (i % 4) + s];
+    return Rows<T>::load(out);
+}
+
+/// The greatest of each column, in all its lanes.
+template <class T> HWY_INLINE Rows<T> column_greatest(const Rows<T>& x)
+{
+    if constexpr (whole_in_one<T>) {
+        HWY_ALIGN constexpr std::int32_t by_8[16] = {8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 4, 5, 6, 7},
+                                         by_4[16] = {4, 5, 6, 7, 0, 1, 2, 3, 12, 13, 14, 15, 8, 9, 10, 11};
+        const typename Rows<T>::D d;
+        const auto half = hn::Max(x.v[0], hn::TableLookupLanes(x.v[0], hn::SetTableIndices(d, by_8)));
+        return {{hn::Max(half, hn::TableLookupLanes(half, hn::SetTableIndices(d, by_4)))}};
+    }
+    HWY_ALIGN T lane[16];
+    x.store(lane);
+    for (std::size_t s = 0; s < 4; ++s) {
+        const T a = lane[s] > lane[4 + s] ? lane[s] : lane[4 + s], b = lane[8 + s] > lane[12 + s] ? lane[8 + s] : lane[12 + s];
+        for (std::size_t row = 0; row < 4; ++row)
+            lane[4 * row + s] = a > b ? a : b;
+    }
+    return Rows<T>::load(lane);
+}
+
+/// succ of rounding.hpp.
+template <class T> HWY_INLINE Rows<T> next(const Rows<T>& x)
+{
+    constexpr T phi = unit_roundoff_of<T> * (1 + 2 * unit_roundoff_of<T>);
+    return x + (magnitude(x) * Rows<T>::all(phi) + Rows<T>::all(smallest_subnormal_of<T>));
+}
+/// That, where results are to be proven.
+template <class T> HWY_INLINE Rows<T> up(const Rows<T>& x, Rounding rounding) { return rounding == Rounding::proven ? next(x) : x; }
+
+/// x where x < y, else y: y where x is not a number.
+template <class T> HWY_INLINE Rows<T> lesser(const Rows<T>& x, const Rows<T>& y)
+{
+    return each(x, y, [](auto a, auto b) { return hn::IfThenElse(hn::Lt(a, b), a, b); });
+}
+
+/// 4 rows of a node's projected map, from axis 4·chunk on; rows past the last axis are there but mean nothing.
+template <class T, std::size_t kAxes> HWY_INLINE const T* map_of(const ProjectedMaps<T>& maps, std::uint32_t node)
+{
+    return maps.value.data() + std::size_t{node} * (4 * projected_rows(kAxes));
+}
+template <std::size_t kAxes> inline constexpr std::size_t row_chunks = (kAxes + 3) / 4;
+
+/// A map along every axis: q in places 0 to 2, θ in place 3.
+template <class T, std::size_t kAxes> struct AxisMap {
+    Rows<T> chunk[row_chunks<kAxes>];
+};
+
+/// A value per side and axis: in lane a of every row that of the chunk's axis a.
+template <class T, std::size_t kAxes> struct Sides {
+    Rows<T> chunk[2][row_chunks<kAxes>];
+};
+
+/// Σ_j m_j (q_j, θ_j), nodes alternately in two sums; m in place `mean` of each node's `stride` values. And the nodes' greatest error.
+template <class T, std::size_t kAxes>
+HWY_INLINE void mean_map(const PackedBv<T>& bv, const ProjectedMaps<T>& maps, const std::uint32_t* node, const T* value, std::size_t stride, std::size_t mean,
+                         AxisMap<T, kAxes>& out, T& error)
+{
+    error = 0;
+    for (std::size_t j = 0; j < bv.count; ++j)
+        error = std::max(error, map_of<T, kAxes>(maps, node[j])[4 * projected_rows(kAxes) - 1]);
+    for (std::size_t c = 0; c < row_chunks<kAxes>; ++c) {
+        auto even = Rows<T>::all(0), odd = even;
+        auto add = [&](std::size_t j, Rows<T>& sum) HWY_ATTR { sum = fma(Rows<T>::all(value[j * stride + mean]), Rows<T>::load(map_of<T, kAxes>(maps, node[j]) + 16 * c), sum); };
+        std::size_t j = 0;
+        for (; j + 1 < bv.count; j += 2) {
+            add(j, even);
+            add(j + 1, odd);
+        }
+        if (j < bv.count)
+            add(j, even);
+        out.chunk[c] = even + odd;
+    }
+}
+
+/// Adds to `value` max q·(x − pivot) over the rest vertices x, q of `direction`, and q̄·pivot + θ̄ of `base`: the points' greatest q·y +
+/// slack·‖q‖. For one chunk of axes.
+template <class T>
+HWY_INLINE void add_rest_support(const PackedBv<T>& bv, const T* point, const Rows<T>& base, const Rows<T>& direction, Rounding rounding, Rows<T>& along, Rows<T>& against)
+{
+    HWY_ALIGN const T pivot[4] = {bv.pivot[0], bv.pivot[1], bv.pivot[2], 1};
+    const auto position = column<0>(row_sum(base * Rows<T>::each_row(pivot)));
+    // Four points at a time, one in a row, with the axes in its lanes.
+    const auto q0 = column<0>(direction), q1 = column<1>(direction), q2 = column<2>(direction), zero = Rows<T>::all(0);
+    auto most = Rows<T>::all(-infinity_of<T>), most_against = most;
+    for (std::size_t i = 0; i < quads_of(bv.points); ++i) {
+        const T* y = point + 12 * i;
+        const auto reached = fma(q0, Rows<T>::each_column(y), fma(q1, Rows<T>::each_column(y + 4), q2 * Rows<T>::each_column(y + 8)));
+        most = greater(reached, most);
+        most_against = greater(zero - reached, most_against);
+    }
+    // ‖q‖, or |q|₁ where squares may vanish or overflow.
+    const auto size0 = magnitude(q0), size1 = magnitude(q1), size2 = magnitude(q2), most_q = greater(greater(size0, size1), size2);
+    const auto root = each((q0 * q0 + q1 * q1) + q2 * q2, [](auto x) { return hn::Sqrt(x); }), sum = (size0 + size1) + size2;
+    Rows<T> norm;
+    const typename Rows<T>::D d;
+    for (std::size_t i = 0; i < Rows<T>::vectors; ++i) {
+        const auto safe = hn::And(hn::Gt(most_q.v[i], hn::Set(d, static_cast<T>(0x1p-40))), hn::Lt(most_q.v[i], hn::Set(d, static_cast<T>(0x1p40))));
+        norm.v[i] = hn::IfThenElse(safe, root.v[i], sum.v[i]);
+    }
+    const auto slack = norm * Rows<T>::all(bv.slack);
+    along = up(along + up(up(column_greatest(most) + slack, rounding) + position, rounding), rounding);
+    against = up(against + up(up(column_greatest(most_against) + slack, rounding) - position, rounding), rounding);
+}
+
+} // namespace cinch::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif
