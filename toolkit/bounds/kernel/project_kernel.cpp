@@ -2,9 +2,7 @@
 #include "toolkit/bounds/kernel/project_kernel.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 
 #include "toolkit/bounds/rounding.hpp"
@@ -59,16 +57,32 @@ HWY_INLINE void shift(Row& row, const Vec3& rest_origin, double origin)
     row.lost = times(magnitude, 0x1p-98);
 }
 
-// The least T that is at least x ≥ 0.
-template <class T> HWY_INLINE T rounded_up(double x)
+/// To T, and, rounded up, to at least x ≥ 0.
+template <class T> HWY_INLINE void store_as(const Quad& x, T* p)
 {
-    const T t = static_cast<T>(x);
-    using Bits = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>;
-    return static_cast<double>(t) >= x || !(x < infinite) ? t : std::bit_cast<T>(static_cast<Bits>(std::bit_cast<Bits>(t) + 1));
+    for (std::size_t i = 0; i < Quad::vectors; ++i) {
+        if constexpr (sizeof(T) == 8)
+            hn::StoreU(x.v[i], Quad::D(), p + i * Quad::width);
+        else
+            hn::StoreU(hn::DemoteTo(hn::Rebind<float, Quad::D>(), x.v[i]), hn::Rebind<float, Quad::D>(), p + i * Quad::width);
+    }
+}
+template <class T> HWY_INLINE void store_up(const Quad& x, T* p)
+{
+    if constexpr (sizeof(T) == 8) {
+        store_as(x, p);
+    } else {
+        const hn::Rebind<float, Quad::D> d;
+        for (std::size_t i = 0; i < Quad::vectors; ++i) { // fl(x) ≥ x(1 − u), and succ goes past x
+            const auto f = hn::DemoteTo(d, x.v[i]);
+            constexpr float phi = unit_roundoff_of<float> * (1 + 2 * unit_roundoff_of<float>);
+            hn::StoreU(hn::Add(f, hn::Add(hn::Mul(hn::Abs(f), hn::Set(d, phi)), hn::Set(d, smallest_subnormal_of<float>))), d, p + i * Quad::width);
+        }
+    }
 }
 
-// ‖(x, y, z)‖ rounded up; squares neither overflow nor vanish.
-HWY_INLINE Quad norm(const Quad& x, const Quad& y, const Quad& z)
+// At least ‖(x, y, z)‖ of these numbers and of what becomes of them in T: squares neither overflow nor vanish.
+template <class T> HWY_INLINE Quad norm(const Quad& x, const Quad& y, const Quad& z)
 {
     const Quad most = greater(greater(absolute(x), absolute(y)), absolute(z));
     const Quad root = square_root((x * x + y * y) + z * z), sum = (absolute(x) + absolute(y)) + absolute(z);
@@ -78,20 +92,8 @@ HWY_INLINE Quad norm(const Quad& x, const Quad& y, const Quad& z)
         const auto safe = hn::And(hn::Gt(most.v[i], hn::Set(d, 0x1p-500)), hn::Lt(most.v[i], hn::Set(d, 0x1p500)));
         out.v[i] = hn::IfThenElse(safe, root.v[i], sum.v[i]);
     }
-    // 3 products, 2 sums and a root: 4 roundings and half of one.
-    return times(out, 1 + 8 * unit_roundoff);
-}
-
-// To T and back, as the records have it.
-template <class T> HWY_INLINE Quad stored(const Quad& x, T (&out)[4])
-{
-    HWY_ALIGN double lane[4];
-    x.store(lane);
-    for (std::size_t i = 0; i < 4; ++i) {
-        out[i] = static_cast<T>(lane[i]);
-        lane[i] = static_cast<double>(out[i]);
-    }
-    return Quad::load(lane);
+    // 3 products, 2 sums and a root: 4 roundings and half of one; then each number by u in T, or by underflow.
+    return times(out, 1 + 8 * unit_roundoff + 2 * static_cast<double>(unit_roundoff_of<T>)) + Quad::all(4 * static_cast<double>(smallest_subnormal_of<T>));
 }
 
 template <class T>
@@ -99,18 +101,23 @@ ProjectionReport project(std::span<const AffineMap> maps, const RestExtent& rest
 {
     const std::size_t record = 4 * projected_rows(axes.size());
     const double extent = rest.about_origin.sum();
-    const bool fits = rest.about_origin.maxCoeff() <= magnitude_limit<T>; // else rest data may overflow T
-    const double node_underflow = 128 * static_cast<double>(smallest_subnormal_of<T>) * (1 + extent);
-    const double evaluation = (rest.influences + 8) * unit_roundoff, evaluation_underflow = 8 * rest.influences * smallest_subnormal;
+    const double limit = rest.about_origin.maxCoeff() <= magnitude_limit<T> ? magnitude_limit<T> : -1; // rest data may overflow T
+    const Quad node_underflow = Quad::all(128 * static_cast<double>(smallest_subnormal_of<T>) * (1 + extent));
+    const double node_rounding = kernel_error_constant * static_cast<double>(unit_roundoff_of<T>), evaluation = (rest.influences + 8) * unit_roundoff;
+    const Quad evaluation_underflow = Quad::all(8 * rest.influences * smallest_subnormal);
+    Quad greatest_vertex_error = Quad::zero();
     ProjectionReport report;
     for (std::size_t first = 0; first < maps.size(); first += 4) {
         const std::size_t count = std::min<std::size_t>(4, maps.size() - first);
+        const AffineMap* own[4]; // the last one again where there are fewer
+        T *out[4], spare[4 * projected_rows(13)];
+        for (std::size_t i = 0; i < 4; ++i) {
+            own[i] = &maps[first + std::min(i, count - 1)];
+            out[i] = i < count ? records + (first + i) * record : spare;
+        }
         Row row[3];
         for (std::size_t r = 0; r < 3; ++r) {
-            HWY_ALIGN double values[4][4];
-            for (std::size_t i = 0; i < 4; ++i)
-                std::copy_n(maps[first + std::min(i, count - 1)].m[r], 4, values[i]);
-            Quad columns[4] = {Quad::load(values[0]), Quad::load(values[1]), Quad::load(values[2]), Quad::load(values[3])};
+            Quad columns[4] = {Quad::load_unaligned(own[0]->m[r]), Quad::load_unaligned(own[1]->m[r]), Quad::load_unaligned(own[2]->m[r]), Quad::load_unaligned(own[3]->m[r])};
             transpose(columns);
             for (std::size_t s = 0; s < 3; ++s)
                 row[r].a[s] = columns[s];
@@ -118,7 +125,6 @@ ProjectionReport project(std::span<const AffineMap> maps, const RestExtent& rest
             shift(row[r], rest.origin, origin[static_cast<int>(r)]);
         }
         Quad error = Quad::zero(), vertex_error = Quad::zero(), everything = Quad::zero();
-        T* const out = records + first * record;
         for (std::size_t a = 0; a < axes.size(); ++a) {
             Quad along[4], magnitude[4], lost = Quad::zero(), world = Quad::zero();
             for (std::size_t s = 0; s < 4; ++s)
@@ -139,45 +145,51 @@ ProjectionReport project(std::span<const AffineMap> maps, const RestExtent& rest
                 about = about + times(magnitude[s], rest.about_origin[static_cast<int>(s)]);
                 world = world + times(magnitude[s], rest.absolute[static_cast<int>(s)]);
             }
-            Quad q[4];
-            T value[4][4];
-            for (std::size_t s = 0; s < 4; ++s) {
-                q[s] = stored<T>(along[s], value[s]);
-                everything = everything + magnitude[s];
-            }
-            everything = everything + about;
-            HWY_ALIGN double length[4];
-            norm(q[0], q[1], q[2]).store(length);
-            for (std::size_t i = 0; i < count; ++i) {
-                for (std::size_t s = 0; s < 4; ++s)
-                    out[i * record + 4 * a + s] = value[s][i];
-                out[i * record + 4 * axes.size() + a] = rounded_up<T>(length[i]);
-            }
-            const Quad computed = next(times(world, evaluation) + Quad::all(evaluation_underflow)); // evaluation_error
+            // What it meets may be 0, which would hide a component from `about`.
+            everything = everything + (about + ((magnitude[0] + magnitude[1]) + magnitude[2]));
+            HWY_ALIGN T length[4];
+            store_up<T>(norm<T>(along[0], along[1], along[2]), length);
+            const Quad computed = next(times(world, evaluation) + evaluation_underflow); // evaluation_error
             const Quad lost_4 = times(lost, 4);
-            const Quad own = next((times(about, kernel_error_constant * static_cast<double>(unit_roundoff_of<T>)) + Quad::all(node_underflow)) + lost_4); // node_error
-            error = greater(own + computed, error);
+            error = greater(next((times(about, node_rounding) + node_underflow) + lost_4) + computed, error); // node_error + evaluation_error
             vertex_error = greater(next(lost_4 + computed), vertex_error);
+            transpose(along);
+            for (std::size_t i = 0; i < 4; ++i) {
+                store_as<T>(along[i], out[i] + 4 * a);
+                out[i][4 * axes.size() + a] = length[i];
+            }
         }
-        HWY_ALIGN double errors[4], vertex_errors[4], all[4];
-        next(error).store(errors);
-        vertex_error.store(vertex_errors);
+        HWY_ALIGN T charge[4];
+        store_up<T>(next(error), charge);
+        for (std::size_t i = 0; i < 4; ++i) {
+            std::fill(out[i] + 5 * axes.size(), out[i] + record - 1, T(0));
+            out[i][record - 1] = proven ? charge[i] : T(0);
+        }
+        bool good = true;
+        HWY_ALIGN double all[4];
         everything.store(all);
+        for (std::size_t i = 0; i < 4; ++i) // false for what is not a number
+            good &= all[i] <= limit && charge[i] < std::numeric_limits<T>::infinity();
+        if (good) {
+            greatest_vertex_error = greater(vertex_error, greatest_vertex_error);
+            continue;
+        }
+        HWY_ALIGN double vertex_errors[4];
+        vertex_error.store(vertex_errors);
         for (std::size_t i = 0; i < count; ++i) {
-            T* const own = out + i * record;
-            std::fill(own + 5 * axes.size(), own + record, T(0));
-            T& charge = own[record - 1];
-            charge = proven ? rounded_up<T>(errors[i]) : T(0);
-            // What overflows, and what is not a number, is in `all`.
-            if (fits && all[i] <= magnitude_limit<T> && charge < std::numeric_limits<T>::infinity()) {
+            if (all[i] <= limit && charge[i] < std::numeric_limits<T>::infinity()) {
                 report.vertex_error = std::max(report.vertex_error, vertex_errors[i]);
                 continue;
             }
-            std::fill_n(own, record, T(0));
-            charge = std::numeric_limits<T>::infinity();
+            std::fill_n(out[i], record, T(0));
+            out[i][record - 1] = std::numeric_limits<T>::infinity();
             ++report.unbounded;
         }
     }
+    HWY_ALIGN double greatest[4];
+    greatest_vertex_error.store(greatest);
+    for (const double error : greatest)
+        report.vertex_error = std::max(report.vertex_error, error);
     return report;
 }
 

@@ -32,6 +32,13 @@ struct Quad {
             q.v[i] = hn::Load(D(), p + i * width); // fields are aligned
         return q;
     }
+    static HWY_INLINE Quad load_unaligned(const double* p)
+    {
+        Quad q;
+        for (std::size_t i = 0; i < vectors; ++i)
+            q.v[i] = hn::LoadU(D(), p + i * width);
+        return q;
+    }
     static HWY_INLINE Quad zero() { return all(0); }
     static HWY_INLINE Quad all(double value)
     {
