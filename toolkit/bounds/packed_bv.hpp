@@ -34,7 +34,7 @@ template <class T> struct PackedBv {
     T centre[3] = {}, half[3] = {}; ///< rest box; used by kinds without local boxes
     T axis[3][3] = {};              ///< and its axes instead of `half` if it is oriented
     bool oriented = false;
-    T pivot[3] = {};                ///< origin of the points and of the weight model
+    T pivot[4] = {0, 0, 0, 1};      ///< origin of the points and of the weight model, and a 1 for θ
     T slack = 0;                    ///< max q·y over all vertices is at most that over the points + slack·‖q‖, also as computed
     T sum_l = 0, sum_r = 0;         ///< about; they only steer λ, but sum_l = 0 if and only if every l is
     T start = 0;                    ///< λ begins at mean b + start·(greatest b − mean b)

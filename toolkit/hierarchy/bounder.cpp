@@ -6,6 +6,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include <hwy/cache_control.h>
 #include <tbb/enumerable_thread_specific.h>
 
 #include "toolkit/bounds/bound_box.hpp"
@@ -161,6 +162,13 @@ void Bounder::bound(std::size_t first, std::size_t last, std::span<double> suppo
     if (p.has_others())
         for (std::size_t i = first; i < last; ++i)
             p.bound_otherwise(i, supports.subspan((i - first) * k, k));
+}
+
+void Bounder::prefetch(std::uint32_t bv) const
+{
+    for (const auto& part : parts_->single)
+        for (std::size_t byte = 0; byte < sizeof part->packed.bvs[bv]; byte += 64)
+            hwy::Prefetch(reinterpret_cast<const char*>(&part->packed.bvs[bv]) + byte);
 }
 
 void Bounder::bound(std::span<const std::uint32_t> list, float* dops) const

@@ -29,6 +29,9 @@ public:
     /// Those of the BVs listed, as floats relative to maps().origin at dops + bv·dop_floats(k): see dop.hpp.
     void bound(std::span<const std::uint32_t> list, float* dops) const;
 
+    /// That it will be bounded soon.
+    void prefetch(std::uint32_t bv) const;
+
     const ProjectedMaps<float>& maps() const; ///< of the frame, whatever the methods and their precision
     const RestExtent& rest() const;
     std::size_t bytes() const; ///< of the rest data that the kernels stream

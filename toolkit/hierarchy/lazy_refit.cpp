@@ -6,6 +6,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include <hwy/cache_control.h>
+
 #include "toolkit/bounds/directions.hpp"
 #include "toolkit/bounds/rounding.hpp"
 #include "toolkit/deform/arithmetic.hpp"
@@ -137,9 +139,11 @@ void LazyRefit::note(std::uint32_t bv)
 {
     stamp(bv);
     if (links_[bv].is_leaf()) {
+        hwy::Prefetch(&leaves_.leaves[links_[bv].child]);
         slot_of_[links_[bv].child] = static_cast<std::uint32_t>(slots_used_);
         wanted_leaves_.emplace_back(bv, static_cast<std::uint32_t>(slots_used_++));
     } else {
+        bounder_.prefetch(bv);
         wanted_.push_back(bv);
     }
 }

@@ -16,6 +16,7 @@
 #define HWY_TARGET_INCLUDE "toolkit/bounds/kernel/bound_kernel.cpp"
 #include <hwy/foreach_target.h>
 
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include "toolkit/bounds/kernel/dual-inl.hpp"
@@ -291,10 +292,24 @@ void bound_range(const KernelInput<T>& in, std::size_t first, std::size_t last, 
     }
 }
 
+template <class T> void prefetch(const KernelInput<T>& in, const PackedBv<T>& bv)
+{
+    if (!takes_one_by_one(bv.kind))
+        return; // a long run, which the hardware follows
+    const T* const value = in.value.data() + bv.first_value;
+    const std::size_t count = 12 * quads_of(bv.points) + bv.count * PackedBv<T>::values(bv.kind);
+    hwy::Prefetch(in.node.data() + bv.first_node);
+    for (std::size_t i = 0; i < count; i += 64 / sizeof(T))
+        hwy::Prefetch(value + i);
+}
+
 template <class T, std::size_t kAxes>
 void bound_list(const KernelInput<T>& in, std::span<const std::uint32_t> list, KernelScratch<T>& scratch, std::size_t side, float* dops)
 {
-    for (const std::uint32_t i : list) {
+    for (std::size_t n = 0; n < list.size(); ++n) {
+        if (n + 2 < list.size())
+            prefetch(in, in.bvs[list[n + 2]]);
+        const std::uint32_t i = list[n];
         const PackedBv<T>& bv = in.bvs[i];
         float* const dop = dops + std::size_t{i} * 2 * side;
         Bound<T, kAxes> bound;

@@ -22,8 +22,8 @@ void linear(const PackedBv<T>& bv, const ProjectedMaps<T>& maps, const std::uint
 {
     constexpr std::size_t stride = PackedBv<T>::values(Method::linear); // gradient (3), residual, moment (3), mean
     mean_map<T, kAxes>(bv, maps, node, value, stride, 7, mean, error);
-    HWY_ALIGN const T pivot[4] = {bv.pivot[0], bv.pivot[1], bv.pivot[2], 1}, last[4] = {0, 0, 0, 1};
-    const auto z = Rows<T>::each_row(pivot), fourth = Rows<T>::each_row(last);
+    HWY_ALIGN static constexpr T last[4] = {0, 0, 0, 1};
+    const auto z = Rows<T>::each_row(bv.pivot), fourth = Rows<T>::each_row(last);
     for (std::size_t c = 0; c < row_chunks<kAxes>; ++c) {
         // Per row Σ P g, Σ |P| residual, and Σ |dq| moment; nodes alternately in two sums.
         Rows<T> direction[2] = {Rows<T>::all(0), Rows<T>::all(0)}, moment[2] = {direction[0], direction[0]};

@@ -245,8 +245,7 @@ HWY_INLINE void mean_map(const PackedBv<T>& bv, const ProjectedMaps<T>& maps, co
 template <class T>
 HWY_INLINE void add_rest_support(const PackedBv<T>& bv, const T* point, const Rows<T>& base, const Rows<T>& direction, Rounding rounding, Rows<T>& along, Rows<T>& against)
 {
-    HWY_ALIGN const T pivot[4] = {bv.pivot[0], bv.pivot[1], bv.pivot[2], 1};
-    const auto position = column<0>(row_sum(base * Rows<T>::each_row(pivot)));
+    const auto position = column<0>(row_sum(base * Rows<T>::each_row(bv.pivot)));
     // Four points at a time, one in a row, with the axes in its lanes.
     const auto q0 = column<0>(direction), q1 = column<1>(direction), q2 = column<2>(direction), zero = Rows<T>::all(0);
     auto most = Rows<T>::all(-infinity_of<T>), most_against = most;

@@ -33,13 +33,20 @@ template <std::size_t L> struct Boxes {
             high[r] = greater(greater(a, b), c) + by;
         }
     }
-    // Those whose box, grown by `wider`, meets a box.
-    HWY_INLINE std::uint32_t meeting(const float (&box_low)[3], const float (&box_high)[3], float wider) const
+    // Those that meet a box.
+    HWY_INLINE std::uint32_t meeting(const float (&box_low)[3], const float (&box_high)[3]) const
     {
         std::uint32_t apart = 0;
         for (std::size_t r = 0; r < 3; ++r)
-            apart |= bits_where_greater(low[r], Wide<L>::all(succ(box_high[r] + wider))) | bits_where_greater(Wide<L>::all(-succ(wider - box_low[r])), high[r]);
+            apart |= bits_where_greater(low[r], Wide<L>::all(box_high[r])) | bits_where_greater(Wide<L>::all(box_low[r]), high[r]);
         return ~apart;
+    }
+    HWY_INLINE void grow(float by)
+    {
+        for (std::size_t r = 0; r < 3; ++r) {
+            low[r] = Wide<L>::all(0) - next(Wide<L>::all(by) - low[r]);
+            high[r] = next(high[r] + Wide<L>::all(by));
+        }
     }
     HWY_INLINE float furthest() const // coordinate
     {
@@ -52,9 +59,9 @@ template <std::size_t L> struct Boxes {
 
 /// b's place relative to a's reference point.
 struct Relative {
-    float shift[3];   ///< of b's corners
-    float low[3], high[3]; ///< of the box around b's leaf
-    float error;      ///< of shift
+    float shift[3];        ///< of b's corners
+    float low[3], high[3]; ///< of the box around b's leaf, grown by a's error
+    float error;           ///< of shift
 };
 HWY_INLINE Relative relative(const ClusterInput& in, const ClusterPair& pair, const LeafPlace& a, const LeafPlace& b)
 {
@@ -64,8 +71,8 @@ HWY_INLINE Relative relative(const ClusterInput& in, const ClusterPair& pair, co
         const float between = b.reference[r] - a.reference[r];
         out.shift[r] = between + in.shift[r];
         far = std::max(far, std::max(std::abs(between), std::abs(out.shift[r])));
-        out.high[r] = succ(succ(succ(pair.dop_b[r] + in.shift[r]) + in.shift_error) - a.reference[r]);
-        out.low[r] = -succ(succ(succ(pair.dop_b[in.side + r] - in.shift[r]) + in.shift_error) + a.reference[r]);
+        out.high[r] = succ(succ(succ(succ(pair.dop_b[r] + in.shift[r]) + in.shift_error) - a.reference[r]) + a.error);
+        out.low[r] = -succ(succ(succ(succ(pair.dop_b[in.side + r] - in.shift[r]) + in.shift_error) + a.reference[r]) + a.error);
     }
     out.error = succ(2 * unit_roundoff_of<float> * far + in.shift_error); // two roundings
     return out;
@@ -81,7 +88,7 @@ template <std::size_t L> HWY_INLINE void gather(const float* slot, const std::ui
 {
     for (std::size_t c = 0; c < 3; ++c)
         for (std::size_t r = 0; r < 3; ++r)
-            out.corner[c][r] = lookup<L>(slot + (3 * c + r) * L, lane) + Wide<L>::all(shift[r]);
+            out.corner[c][r] = lookup<L>(Wide<L>::load(slot + (3 * c + r) * L), lane) + Wide<L>::all(shift[r]);
 }
 
 template <std::size_t L> void test_pair(const ClusterInput& in, const ClusterPair& pair, std::uint32_t index, std::vector<TriangleHit>& out, std::uint64_t& tests)
@@ -90,8 +97,8 @@ template <std::size_t L> void test_pair(const ClusterInput& in, const ClusterPai
     const LeafPlace &place_a = place_of(pair.slot_a, L), &place_b = place_of(pair.slot_b, L);
     const Relative to_b = relative(in, pair, place_a, place_b);
     // Which triangles of either meet the box of the other leaf.
-    const Boxes<L> a(pair.slot_a, at_home);
-    std::uint32_t of_a = a.meeting(to_b.low, to_b.high, place_a.error) & ((1u << pair.triangles_a) - 1);
+    Boxes<L> a(pair.slot_a, at_home);
+    std::uint32_t of_a = a.meeting(to_b.low, to_b.high) & ((1u << pair.triangles_a) - 1);
     if (of_a == 0)
         return;
     const Boxes<L> b(pair.slot_b, to_b.shift);
@@ -99,15 +106,16 @@ template <std::size_t L> void test_pair(const ClusterInput& in, const ClusterPai
     const float error_b = succ(succ(place_b.error + to_b.error) + rounding);
     float low[3], high[3];
     for (std::size_t r = 0; r < 3; ++r) {
-        high[r] = succ(pair.dop_a[r] - place_a.reference[r]);
-        low[r] = -succ(pair.dop_a[in.side + r] + place_a.reference[r]);
+        high[r] = succ(succ(pair.dop_a[r] - place_a.reference[r]) + error_b);
+        low[r] = -succ(succ(pair.dop_a[in.side + r] + place_a.reference[r]) + error_b);
     }
-    const std::uint32_t of_b = b.meeting(low, high, error_b) & ((1u << pair.triangles_b) - 1);
+    const std::uint32_t of_b = b.meeting(low, high) & ((1u << pair.triangles_b) - 1);
     if (of_b == 0)
         return;
 
     const float s = succ(place_a.error + error_b);
     Candidates<L> candidates;
+    a.grow(s);
     HWY_ALIGN float box[6][L];
     for (std::size_t r = 0; r < 3; ++r) {
         a.low[r].store(box[r]);
@@ -119,7 +127,7 @@ template <std::size_t L> void test_pair(const ClusterInput& in, const ClusterPai
             low[r] = box[r][i];
             high[r] = box[3 + r][i];
         }
-        for (std::uint32_t left = of_b & b.meeting(low, high, s); left != 0; left &= left - 1) {
+        for (std::uint32_t left = of_b & b.meeting(low, high); left != 0; left &= left - 1) {
             candidates.i[candidates.count] = static_cast<std::uint8_t>(i);
             candidates.j[candidates.count++] = static_cast<std::uint8_t>(std::countr_zero(left));
         }

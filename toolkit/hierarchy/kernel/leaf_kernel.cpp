@@ -18,6 +18,7 @@
 #define HWY_TARGET_INCLUDE "toolkit/hierarchy/kernel/leaf_kernel.cpp"
 #include <hwy/foreach_target.h>
 
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include "toolkit/hierarchy/kernel/wide-inl.hpp"
@@ -59,24 +60,20 @@ HWY_INLINE Record with_last(const Record& x, const Record& at_three, const Recor
     return out;
 }
 
-// Of a leaf's simulation nodes: the maps about the pivot, and the sums that bound their errors.
+// Of a leaf's simulation nodes: Y_0, and the sums that bound errors. In every lane of row r that of coordinate r.
 struct NodeSums {
-    float reference[3], images, differing, spread; // images: Σ h N, differing: Σ r N, spread: M; each the greatest of the three rows
-    float maps;                                    // Σ h |A|, all together
+    Record reference, images, differing, spread; // images: Σ h N, differing: Σ r N, spread: M
+    Record maps;                                 // Σ h (|A_r0| + |A_r1| + |A_r2|)
     bool known;
 };
 
 // maps: per node A_r and U_r in rows of four, 16 floats each.
 HWY_INLINE NodeSums prepare_nodes(const LeafInput& in, const PackedLeaf& leaf, const std::uint32_t* influence, float* maps)
 {
-    HWY_ALIGN constexpr float third[16] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
-    HWY_ALIGN float z[16];
-    for (std::size_t r = 0; r < 16; r += 4) {
-        std::copy_n(leaf.pivot, 3, z + r);
-        z[r + 3] = 1;
-    }
-    const auto pivot = Record::load(z), threes = Record::load(third);
-    auto by_h = Record::all(0), by_r = Record::all(0), spread = Record::all(0), reference = Record::all(0);
+    HWY_ALIGN static constexpr float third[4] = {0, 0, 0, 1}, first_three[4] = {1, 1, 1, 0};
+    const auto pivot = Record::fours(leaf.pivot), threes = Record::fours(third);
+    auto by_h = Record::all(0), by_r = Record::all(0), spread = Record::all(0);
+    NodeSums out;
     float charge = 0;
     for (std::size_t j = 0; j < leaf.nodes; ++j) {
         const float* record = in.records + influence[4 * j] * in.record;
@@ -85,48 +82,48 @@ HWY_INLINE NodeSums prepare_nodes(const LeafInput& in, const PackedLeaf& leaf, c
         std::memcpy(&r, influence + 4 * j + 2, sizeof r);
         const auto map = load_record(record), image = sum_of_fours(map * pivot);
         if (j == 0)
-            reference = image;
-        const auto from_reference = image - reference, size = magnitude(map);
+            out.reference = image;
+        const auto from_reference = image - out.reference, size = magnitude(map);
         with_last(map, from_reference, threes).store(maps + 16 * j);
         by_h = fma(size, Record::all(h), by_h);
         by_r = fma(size, Record::all(r), by_r);
         spread = fma(magnitude(from_reference), Record::all(h), spread);
         charge = std::max(charge, record[in.record - 1]);
     }
-    HWY_ALIGN float R[16], H[16], D[16], S[16];
-    reference.store(R);
-    by_h.store(H);
-    by_r.store(D);
-    spread.store(S);
-    NodeSums out{};
-    const float* x = leaf.reach;
-    float most_z[3];
-    for (std::size_t s = 0; s < 3; ++s)
-        most_z[s] = std::abs(leaf.pivot[s]);
-    for (std::size_t r = 0; r < 3; ++r) {
-        const float *h = H + 4 * r, *d = D + 4 * r;
-        out.reference[r] = R[4 * r];
-        out.images = std::max(out.images, ((h[0] * most_z[0] + h[1] * most_z[1]) + h[2] * most_z[2]) + h[3]);
-        out.differing = std::max(out.differing, ((d[0] * most_z[0] + d[1] * most_z[1]) + d[2] * most_z[2]) + d[3]);
-        out.spread = std::max(out.spread, ((h[0] * x[0] + h[1] * x[1]) + h[2] * x[2]) + S[4 * r]);
-        out.maps += (h[0] + h[1]) + h[2];
-    }
+    const auto z = magnitude(pivot);
+    out.images = sum_of_fours(by_h * z);
+    out.differing = sum_of_fours(by_r * z);
+    out.spread = sum_of_fours(by_h * Record::fours(leaf.reach)) + spread;
+    out.maps = sum_of_fours(by_h * Record::fours(first_three));
     out.known = charge < infinity;
     return out;
+}
+
+/// The greatest over rows 0 to 2.
+HWY_INLINE float greatest_row(const Record& x)
+{
+    HWY_ALIGN float lane[16];
+    x.store(lane);
+    return std::max(std::max(lane[0], lane[4]), lane[8]);
 }
 
 // See evaluate_leaves.
 HWY_INLINE LeafPlace errors_of(const NodeSums& m, const PackedLeaf& leaf, float vertex_error)
 {
-    LeafPlace place{{m.reference[0], m.reference[1], m.reference[2]}, infinity, infinity};
+    LeafPlace place{{0, 0, 0}, infinity, infinity};
     if (!m.known)
         return place;
+    HWY_ALIGN float reference[16];
+    m.reference.store(reference);
+    for (std::size_t r = 0; r < 3; ++r)
+        place.reference[r] = reference[4 * r];
     constexpr float u = unit_roundoff_of<float> * 1.02f;
     const float n = static_cast<float>(leaf.nodes + 8);
     const float extent = ((leaf.reach[0] + leaf.reach[1]) + leaf.reach[2]) + ((std::abs(leaf.pivot[0]) + std::abs(leaf.pivot[1])) + std::abs(leaf.pivot[2]));
-    const float underflow = (n * 2 * smallest_subnormal_of<float>) * ((1 + extent) + m.maps), sum = (n * u) * m.spread + underflow;
-    place.error = succ(succ((6 * u) * m.images + sum) + vertex_error);
-    place.difference = succ(succ((6 * u) * m.differing + 2 * sum) + 2 * vertex_error);
+    const auto sum = fma(m.spread, Record::all(n * u), fma(m.maps, Record::all(n * 0x1p-120f), Record::all((n * 0x1p-120f) * (1 + extent))));
+    const auto six_u = Record::all(6 * u);
+    place.error = succ(succ(greatest_row(fma(m.images, six_u, sum))) + vertex_error);
+    place.difference = succ(succ(greatest_row(fma(m.differing, six_u, sum + sum))) + 2 * vertex_error);
     return place;
 }
 
@@ -135,21 +132,24 @@ template <std::size_t L> HWY_INLINE void bound_vertices(const LeafInput& in, con
 {
     const std::size_t side = dop_side(in.kdop);
     const auto axes = axes_of(in.kdop);
+    for (std::size_t r = 0; r < 3; ++r) { // the faces come first
+        dop[r] = succ(succ(greatest(p[r]) + place.reference[r]) + place.error);
+        dop[side + r] = succ(succ(greatest(Wide<L>::all(0) - p[r]) - place.reference[r]) + place.error);
+    }
+    if (axes.size() == 3)
+        return;
     // Sums of up to three coordinates pass 2 roundings.
     const float far = greatest(greater(greater(magnitude(p[0]), magnitude(p[1])), magnitude(p[2])));
     const float whole = far + std::max(std::max(std::abs(place.reference[0]), std::abs(place.reference[1])), std::abs(place.reference[2]));
-    const float rounding = 16 * unit_roundoff_of<float> * whole;
-    for (std::size_t a = 0; a < axes.size(); ++a) {
+    const float wider = succ(succ(3 * place.error) + 16 * unit_roundoff_of<float> * whole);
+    for (std::size_t a = 3; a < axes.size(); ++a) {
         Wide<L> along = Wide<L>::all(0);
         float reference = 0;
-        int terms = 0;
         for (std::size_t r = 0; r < 3; ++r)
             if (axes[a][r] != 0) {
                 along = axes[a][r] > 0 ? along + p[r] : along - p[r];
                 reference = axes[a][r] > 0 ? reference + place.reference[r] : reference - place.reference[r];
-                ++terms;
             }
-        const float wider = terms == 1 ? place.error : succ(succ(static_cast<float>(terms) * place.error) + rounding);
         dop[a] = succ(succ(greatest(along) + reference) + wider);
         dop[side + a] = succ(succ(greatest(Wide<L>::all(0) - along) - reference) + wider);
     }
@@ -158,12 +158,9 @@ template <std::size_t L> HWY_INLINE void bound_vertices(const LeafInput& in, con
 // Corners of triangles from the vertices.
 template <std::size_t L> HWY_INLINE void place_corners(const Wide<L> (&p)[3], const std::uint8_t* corner, float* slot)
 {
-    HWY_ALIGN float place[3][L];
-    for (std::size_t r = 0; r < 3; ++r)
-        p[r].store(place[r]);
     for (std::size_t c = 0; c < 3; ++c)
         for (std::size_t r = 0; r < 3; ++r)
-            lookup<L>(place[r], corner + c * L).store(slot + (3 * c + r) * L);
+            lookup<L>(p[r], corner + c * L).store(slot + (3 * c + r) * L);
 }
 
 template <std::size_t L> void evaluate_leaf(const LeafInput& in, const LeafJob& job, float* maps)
@@ -221,14 +218,25 @@ template <std::size_t L> void evaluate_leaf(const LeafInput& in, const LeafJob& 
     place_of(job.slot, L) = place;
 }
 
+void prefetch(const LeafInput& in, const LeafJob& job)
+{
+    const PackedLeaf& leaf = in.leaves[job.leaf];
+    const float* const value = in.value + leaf.first;
+    for (std::size_t i = 0; i < LeafRun{in.lanes, leaf.nodes}.size(); i += 16)
+        hwy::Prefetch(value + i);
+}
+
 void evaluate_list(const LeafInput& in, std::span<const LeafJob> jobs, float* maps)
 {
-    for (const LeafJob& job : jobs)
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+        if (i + 2 < jobs.size())
+            prefetch(in, jobs[i + 2]);
         switch (in.lanes) {
-        case 4: evaluate_leaf<4>(in, job, maps); break;
-        case 8: evaluate_leaf<8>(in, job, maps); break;
-        default: evaluate_leaf<16>(in, job, maps); break;
+        case 4: evaluate_leaf<4>(in, jobs[i], maps); break;
+        case 8: evaluate_leaf<8>(in, jobs[i], maps); break;
+        default: evaluate_leaf<16>(in, jobs[i], maps); break;
         }
+    }
 }
 
 } // namespace cinch::HWY_NAMESPACE

@@ -17,8 +17,8 @@ struct PackedLeaf {
     std::uint32_t nodes = 0;          ///< simulation nodes
     std::uint32_t first_triangle = 0; ///< in Bvh::triangle
     std::uint32_t triangles = 0, vertices = 0;
-    float pivot[3] = {0, 0, 0};       ///< relative to the rest origin
-    float reach[3] = {0, 0, 0};       ///< at least |x|, |y|, |z| of every vertex
+    float pivot[4] = {0, 0, 0, 1};    ///< relative to the rest origin, and a 1
+    float reach[4] = {0, 0, 0, 0};    ///< at least |x|, |y|, |z| of every vertex, and a 0
 };
 
 /// Where the words of a run stand.
@@ -67,7 +67,7 @@ struct LeafJob {
 ///     6u Σ r_j N_j of a difference of two;
 ///   Σ w (A y + U): 3 roundings to float, n in the sum, 3 in the product with y, 1 for U_j's own: γ_{n+7} of M = Σ h_j (|A_j| reach + |U_j|).
 /// For n ≤ 65536 a factor 1.02 covers higher orders and the n + 5 roundings of N and M themselves. Products and conversions that underflow
-/// lose η/2 each: 2^-148·(n + 8)(1 + Σ(|z| + reach) + Σ h|A|) is more.
+/// lose 2^-150 each; 2^-120·(n + 8)(1 + Σ(|z| + reach) + Σ h|A|) is far more, and made of normal numbers.
 void evaluate_leaves(const LeafInput& input, std::span<const LeafJob> jobs);
 
 } // namespace cinch

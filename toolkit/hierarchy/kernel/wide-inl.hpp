@@ -13,6 +13,8 @@
 
 #include <hwy/highway.h>
 
+#include "toolkit/bounds/rounding.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace cinch::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
@@ -37,6 +39,18 @@ template <std::size_t L> struct Wide {
         Wide x;
         for (std::size_t i = 0; i < vectors; ++i)
             x.v[i] = hn::Set(D(), value);
+        return x;
+    }
+    /// The same four values over and over.
+    static HWY_INLINE Wide fours(const float* p)
+    {
+        Wide x;
+        for (std::size_t i = 0; i < vectors; ++i) {
+            if constexpr (width == 1)
+                x.v[i] = hn::Set(D(), p[i % 4]);
+            else
+                x.v[i] = hn::LoadDup128(D(), p);
+        }
         return x;
     }
     HWY_INLINE void store(float* p) const // aligned
@@ -111,6 +125,13 @@ template <std::size_t L> HWY_INLINE std::uint32_t bits_where_greater(const Wide<
     return bits;
 }
 
+/// succ of rounding.hpp.
+template <std::size_t L> HWY_INLINE Wide<L> next(const Wide<L>& x)
+{
+    constexpr float phi = unit_roundoff_of<float> * (1 + 2 * unit_roundoff_of<float>);
+    return x + (magnitude(x) * Wide<L>::all(phi) + Wide<L>::all(smallest_subnormal_of<float>));
+}
+
 /// a where the lane's bit is set, else b.
 template <std::size_t L> HWY_INLINE Wide<L> select(std::uint32_t bits, const Wide<L>& a, const Wide<L>& b)
 {
@@ -127,20 +148,21 @@ template <std::size_t L> HWY_INLINE Wide<L> select(std::uint32_t bits, const Wid
     return x;
 }
 
-/// Lane n is table[index[n]], table of L floats on a boundary of as many.
-template <std::size_t L> HWY_INLINE Wide<L> lookup(const float* table, const std::uint8_t* index)
+/// Lane n is that of table at index[n].
+template <std::size_t L> HWY_INLINE Wide<L> lookup(const Wide<L>& table, const std::uint8_t* index)
 {
 #if HWY_TARGET != HWY_SCALAR
     if constexpr (Wide<L>::vectors == 1 && L == 16) {
         using D = typename Wide<L>::D;
         const hn::RebindToSigned<D> di;
         const hn::Rebind<std::uint8_t, D> d8;
-        return {{hn::TableLookupLanes(hn::Load(D(), table), hn::IndicesFromVec(D(), hn::PromoteTo(di, hn::LoadU(d8, index))))}};
+        return {{hn::TableLookupLanes(table.v[0], hn::IndicesFromVec(D(), hn::PromoteTo(di, hn::LoadU(d8, index))))}};
     }
 #endif
-    HWY_ALIGN float out[L];
+    HWY_ALIGN float in[L], out[L];
+    table.store(in);
     for (std::size_t n = 0; n < L; ++n)
-        out[n] = table[index[n]];
+        out[n] = in[index[n]];
     return Wide<L>::load(out);
 }
 
