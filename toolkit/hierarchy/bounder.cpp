@@ -34,7 +34,8 @@ template <class T> struct KernelPart {
     mutable tbb::enumerable_thread_specific<KernelScratch<T>> scratch;
 
     KernelPart(const Bvh& bvh, const DeformableSurface& surface, Method method, const RefitOptions& options, Bounder::Leaves leaves)
-        : packed(pack<T>(bvh, surface, choose_kinds(bvh, surface, method, options.rest_shape), leaves == Bounder::Leaves::included))
+        : packed(pack<T>(bvh, surface, choose_kinds(bvh, surface, method, options.rest_shape, leaves == Bounder::Leaves::included ? 0.96 : 0.85),
+                         leaves == Bounder::Leaves::included)) // for queries time counts for more
     {
         if (options.remember)
             remembered.assign(2 * packed.bvs.size() * static_cast<std::size_t>(options.kdop), std::numeric_limits<T>::quiet_NaN());

@@ -99,7 +99,7 @@ Trial calibrate(const Bvh& bvh, const DeformableSurface& surface, Method kind, s
 
 } // namespace
 
-std::vector<ChosenKind> choose_kinds(const Bvh& bvh, const DeformableSurface& surface, Method method, RestShape shape)
+std::vector<ChosenKind> choose_kinds(const Bvh& bvh, const DeformableSurface& surface, Method method, RestShape shape, double worth_twice)
 {
     const bool box_only = box_methods.contains(method);
     std::vector<ChosenKind> chosen(bvh.bvs.size(), {method, {}, 0, 0, box_only && shape == RestShape::obb});
@@ -120,7 +120,6 @@ std::vector<ChosenKind> choose_kinds(const Bvh& bvh, const DeformableSurface& su
         return chosen;
     }
     constexpr Method kinds[] = {Method::linear, Method::support, Method::local};
-    constexpr double worth_twice = 0.96; // of the width, for two bounds that cost twice the time
     Trial trial[3];
     std::vector<double> start[3];
     for (std::size_t k = 0; k < 3; ++k)

@@ -32,8 +32,10 @@ RestExtent rest_extent(const Bvh& bvh, const DeformableSurface& surface, RestSha
 
 /// For convex, eq12, limited and linear that kind; for local and support that kind with λ begun where it did best on synthetic
 /// deformations; for `best` whichever of linear, support and local did best there, or two of them where that is worth the time.
-/// The deformations are random quadratic ones, each node moving as at the mean of the vertices it influences. Deterministic.
-std::vector<ChosenKind> choose_kinds(const Bvh& bvh, const DeformableSurface& surface, Method method, RestShape shape = RestShape::aabb);
+/// The deformations are random quadratic ones, each node moving as at the mean of the vertices it influences. Deterministic. Two kinds,
+/// which take twice the time, are worth it where their intersection has at most this share of the width of the better one.
+std::vector<ChosenKind> choose_kinds(const Bvh& bvh, const DeformableSurface& surface, Method method, RestShape shape = RestShape::aabb,
+                                     double worth_twice = 0.96);
 
 /// Rounds everything outward to T. Leaves have no data but their place if they are not wanted. Throws std::length_error for float and
 /// a BV of more than 65,536 simulation nodes.
