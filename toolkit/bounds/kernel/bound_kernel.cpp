@@ -158,14 +158,14 @@ void bound_by_rows(const KernelInput<T>& in, const PackedBv<T>& bv, T* remembere
     if (bv.kind == Method::linear) {
         linear<T, kAxes>(bv, *in.maps, node, point, value, in.rounding, reference, bound, out.error);
     } else {
-        if (scratch.b.size() < 32 * chunks * bv.count)
-            scratch.b.resize(32 * chunks * bv.count);
+        if (scratch.b.size() < 16 * chunks * bv.count)
+            scratch.b.resize(16 * chunks * bv.count);
         T* b = scratch.b.data();
         mean_map<T, kAxes>(bv, *in.maps, node, value, PackedBv<T>::values(Method::support), support_mean, reference, out.error);
         RowExtrema<T, kAxes> e;
         support_extrema<T, kAxes>(bv, *in.maps, node, value, reference, b, e);
         if (in.passes == 1 && !remembered) {
-            Rows<T> lambda[2][chunks];
+            SidesInRows<T, kAxes> lambda;
             support_in_one_pass<T, kAxes>(bv, value, b, e, in.rounding, bound, lambda);
             if (out.traced)
                 to_array<T, kAxes>(lambda, out.lambda);
@@ -175,7 +175,7 @@ void bound_by_rows(const KernelInput<T>& in, const PackedBv<T>& bv, T* remembere
             to_array<T, kAxes>(e.mean, own.mean);
             begin<T, kAxes>(own, out);
             search<T, kAxes>(in, bv, own, remembered, out, [&]<bool kMass>(const T (&at)[2][kAxes], Dual<T, kAxes>& d) {
-                Rows<T> lambda[2][chunks];
+                SidesInRows<T, kAxes> lambda;
                 from_array<T, kAxes>(at, lambda);
                 RowDual<T, kAxes> parts;
                 support_dual<T, kAxes, kMass>(bv, value, b, lambda, parts);

@@ -8,6 +8,7 @@
 #endif
 
 #include <cmath>
+#include <utility>
 
 #include <hwy/highway.h>
 
@@ -144,6 +145,44 @@ template <class T> HWY_INLINE Rows<T> row_sum(const Rows<T>& x)
             lane[a + s] = sum;
     }
     return Rows<T>::load(lane);
+}
+
+/// Even and odd lanes change places, two by two.
+template <class T> HWY_INLINE Rows<T> exchange_sides(const Rows<T>& x)
+{
+#if HWY_TARGET != HWY_SCALAR
+    if constexpr (sizeof(T) == 4)
+        return each(x, [](auto v) { return hn::Shuffle2301(v); });
+    else if constexpr (Rows<T>::width == 4)
+        return each(x, [](auto v) { return hn::Shuffle01(v); });
+#endif
+    HWY_ALIGN T lane[16];
+    x.store(lane);
+    for (std::size_t i = 0; i < 16; i += 2)
+        std::swap(lane[i], lane[i + 1]);
+    return Rows<T>::load(lane);
+}
+
+/// In the even lanes of every row its sum in x, in the odd ones that in y, (0 + 1) + (2 + 3).
+template <class T> HWY_INLINE Rows<T> row_sums(const Rows<T>& x, const Rows<T>& y)
+{
+#if HWY_TARGET != HWY_SCALAR
+    if constexpr (sizeof(T) == 4 || Rows<T>::width == 4) {
+        const auto pairs = each(x + exchange_sides(x), y + exchange_sides(y), [](auto a, auto b) { return hn::OddEven(b, a); });
+        if constexpr (sizeof(T) == 4)
+            return each(pairs, [](auto v) { return hn::Add(v, hn::Shuffle1032(v)); });
+        else
+            return each(pairs, [](auto v) { return hn::Add(v, hn::ConcatLowerUpper(typename Rows<T>::D(), v, v)); });
+    }
+#endif
+    HWY_ALIGN T in[2][16], out[16];
+    x.store(in[0]);
+    y.store(in[1]);
+    for (std::size_t i = 0; i < 16; ++i) {
+        const T* row = in[i % 2] + i / 4 * 4;
+        out[i] = (row[0] + row[1]) + (row[2] + row[3]);
+    }
+    return Rows<T>::load(out);
 }
 
 #if HWY_TARGET != HWY_SCALAR
