@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "experiments/collide/backend.hpp"
 #include "experiments/report/table.hpp"
 #include "toolkit/deform/motion.hpp"
 #include "toolkit/surface/shapes.hpp"
@@ -120,6 +121,41 @@ void add_simulate(CLI::App& app, SimulateOptions& o)
                    "\n"
                    "Exit status: 0 done, 1 a step could not be solved (the state before it is kept),\n"
                    "2 bad usage or scene, 130 interrupted (what is done is kept).");
+}
+
+void add_collide(CLI::App& app, CollideOptions& o)
+{
+    CLI::App& command = *app.add_subcommand("collide", "collision detection (Tables 2 to 4, Fig. 7)");
+    auto option = [&](const char* name, auto& value, const std::string& description) { return command.add_option(name, value, wrapped(description)); };
+    option("SCENE", o.scenes, "scenes of several bodies, or .json files [the rings of Table 2, santa-ring-1 to -8, and fishes]")->option_text("...");
+    std::string names;
+    for (const BackendKind& kind : backend_kinds())
+        names += (names.empty() ? "" : ", ") + kind.name;
+    option("--backends", o.backends, fmt::format("which to measure, of {} [all]; times are over the first one's", names))->delimiter(',')->option_text("NAME,...");
+    option("--frames", o.frames, "the last so many of the scene [60]")->check(CLI::Range(1, 1000000))->option_text("N");
+    option("--rounds", o.rounds, "through all frames, backends taking turns; those over 100 ms a frame run once [3]")->check(CLI::Range(1, 1000))->option_text("N");
+    option("--threads", o.threads, "threads [1, on one core]; pairs are the same, in the same order")->check(CLI::Range(1, 1024))->option_text("N");
+    option("--seed", o.seed, "seed of everything random [0]")->option_text("N");
+    command.add_flag("--cold", o.cold, wrapped("evict the caches before every frame, as an application's other work does"));
+    add_output(command, o.output);
+    std::string about = "Backends:\n";
+    for (const BackendKind& kind : backend_kinds()) {
+        const std::string text = folded(kind.what, 62);
+        about += fmt::format("  {:<14}", kind.name);
+        for (const char c : text)
+            about += c == '\n' ? std::string("\n                ") : std::string(1, c);
+        about += "\n";
+    }
+    command.footer(about + "\n"
+                   "Examples:\n"
+                   "  cinch collide                          everything, about eight minutes\n"
+                   "  cinch collide santa-ring-3 --backends cinch,refit-16,embree\n"
+                   "  cinch collide fishes --json > fishes.jsonl\n"
+                   "  cinch collide santa-ring-7 --cold --plot cold.svg\n"
+                   "\n"
+                   "All backends find all intersecting pairs of triangles, by the same exact test.\n"
+                   "Exit status: 0 done, 1 this project's own found different pairs, 2 bad usage or\n"
+                   "scene, 130 interrupted (results so far are printed).");
 }
 
 #ifdef CINCH_EXACT

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "experiments/collide/collide.hpp"
 #include "experiments/scaling.hpp"
 #include "experiments/simulation/cost_simulation.hpp"
 #include "experiments/simulation/simulate.hpp"
@@ -20,6 +21,7 @@ namespace cinch {
 /// Every subcommand with its options, which go to the struct given, and its help.
 void add_scaling(CLI::App& app, ScalingOptions& o);
 void add_simulate(CLI::App& app, SimulateOptions& o);
+void add_collide(CLI::App& app, CollideOptions& o);
 #ifdef CINCH_EXACT
 void add_verify(CLI::App& app, VerifyOptions& o);
 void add_tightness(CLI::App& app, TightnessOptions& o);

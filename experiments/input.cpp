@@ -178,7 +178,7 @@ Inputs load_scene(const InputOptions& options)
             for (std::size_t b = 0; b < steps.size(); ++b)
                 if (!steps[b].failure.empty())
                     throw std::runtime_error(fmt::format("{}: body '{}' at {:.6g} s: {}", options.input, simulation.bodies()[b].name, simulation.time_s(), steps[b].failure));
-            if (f * wanted / last != (f - 1) * wanted / last)
+            if (options.last_frames ? f + wanted > last : f * wanted / last != (f - 1) * wanted / last)
                 record();
             progress.done(f);
         }

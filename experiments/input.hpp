@@ -20,6 +20,7 @@ struct InputOptions {
     std::string clip;
     double fps = 0;
     std::size_t frames = 0;
+    bool last_frames = false; ///< of a scene: the last `frames` one after the other, instead of evenly spread
     std::uint64_t seed = 0;
     std::string body; ///< of a scene; empty: all of them, or the first where one is asked for
 };

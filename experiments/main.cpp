@@ -44,6 +44,8 @@ int main(int argc, char** argv)
     add_scaling(app, scaling_options);
     SimulateOptions simulate_options;
     add_simulate(app, simulate_options);
+    CollideOptions collide_options;
+    add_collide(app, collide_options);
     const auto run = [&](const CLI::App& parsed) -> int {
 #ifdef CINCH_EXACT
         if (parsed.got_subcommand("verify"))
@@ -73,6 +75,8 @@ int main(int argc, char** argv)
             return scaling(scaling_options);
         if (parsed.got_subcommand("simulate"))
             return simulate(simulate_options);
+        if (parsed.got_subcommand("collide"))
+            return collide(collide_options);
         return parsed.get_subcommands().empty() ? bad_input : 0;
     };
     if (const char* target = std::getenv("CINCH_TARGET"); target && *target && !force_kernel_target(target)) {

@@ -41,7 +41,7 @@ public:
     FullRefit(const CollideScene& scene, bool single) : positions_(scene)
     {
         for (const Input& body : scene.bodies) {
-            const Bvh bvh = single ? build_bvh(body.surface, 1) : build_bvh(body.surface, ClusterSize{16, 16});
+            const Bvh bvh = single ? build_bvh(body.surface, 1, RestDetail::boxes) : build_bvh(body.surface, ClusterSize{16, 16}, RestDetail::boxes);
             Tree& tree = trees_.emplace_back();
             tree.triangle = bvh.triangle;
             for (const Bv& bv : bvh.bvs) {

@@ -4,17 +4,24 @@
 #include <algorithm>
 #include <chrono>
 
+#include <tbb/global_control.h>
+
+#include "experiments/measure/race.hpp"
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/progress.hpp"
 
 namespace cinch {
 namespace {
 
+constexpr double slow_ms = 100; // a frame of a slow backend
+
 double median(std::vector<double> all)
 {
+    if (all.empty())
+        return 0;
     const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
     std::nth_element(all.begin(), middle, all.end());
-    return all.empty() ? 0 : *middle;
+    return *middle;
 }
 
 // More than any cache holds, read and written.
@@ -32,7 +39,6 @@ struct Times {
 struct Contestant {
     std::unique_ptr<Backend> backend;
     std::vector<Times> frames;
-    std::vector<double> pairs;
     Measured out;
     bool slow = false;
 };
@@ -78,25 +84,33 @@ void run_frame(Contestant& c, std::size_t frame, bool cold, std::vector<Triangle
 std::vector<Measured> measure(const CollideScene& scene, const std::vector<BackendKind>& kinds, const MeasureOptions& options)
 {
     std::vector<std::vector<TrianglePair>> expected(scene.frames()); // of the first one
-    std::vector<Contestant> all;
+    std::vector<Contestant> all(kinds.size());
+    {
+        Progress progress(scene.name + ": building", kinds.size());
+        for (std::size_t k = 0; k < kinds.size() && !interrupted(); ++k) {
+            all[k].backend = kinds[k].make(scene);
+            all[k].frames.resize(scene.frames());
+            all[k].out.backend = kinds[k].name;
+            progress.done(k + 1);
+        }
+    }
+    if (interrupted())
+        return {};
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(options.threads));
+    if (options.threads == 1)
+        pin_to_one_core();
     std::vector<TrianglePair> pairs;
     Progress progress(scene.name, kinds.size() * options.rounds);
     std::size_t done = 0;
     for (std::size_t round = 0; round < options.rounds; ++round)
         for (std::size_t k = 0; k < kinds.size() && !interrupted(); ++k) {
-            if (round == 0) {
-                Contestant& made = all.emplace_back();
-                made.backend = kinds[k].make(scene);
-                made.frames.resize(scene.frames());
-                made.out.backend = kinds[k].name;
-            }
             Contestant& c = all[k];
             for (std::size_t f = 0; f < scene.frames() && !(round > 0 && c.slow) && !interrupted(); ++f) {
                 run_frame(c, f, options.cold, pairs);
                 if (round > 0)
                     continue;
-                c.slow |= c.frames[f].total[0] > options.slow_ms;
-                c.pairs.push_back(static_cast<double>(pairs.size()));
+                c.slow |= c.frames[f].total[0] > slow_ms;
+                c.out.pairs_of_frame.push_back(static_cast<double>(pairs.size()));
                 if (const QueryCounts* counts = c.backend->counts()) {
                     c.out.counts = true;
                     add(c.out.sums, *counts);
@@ -123,13 +137,15 @@ std::vector<Measured> measure(const CollideScene& scene, const std::vector<Backe
             query.push_back(median(t.query));
             c.out.total_of_frame.push_back(median(t.total));
         }
+        if (c.out.total_of_frame.empty())
+            continue;
         c.out.frames = c.out.total_of_frame.size();
         c.out.evaluate_ms = median(evaluate);
         c.out.update_ms = median(update);
         c.out.query_ms = median(query);
         c.out.total_ms = median(c.out.total_of_frame);
-        c.out.pairs = median(c.pairs);
-        c.out.megabytes_x10 = c.backend->bytes() / 100000;
+        c.out.pairs = median(c.out.pairs_of_frame);
+        c.out.megabytes = static_cast<double>(c.backend->bytes()) / 1e6 / static_cast<double>(scene.bodies.size());
         results.push_back(std::move(c.out));
     }
     return results;

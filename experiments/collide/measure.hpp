@@ -12,19 +12,19 @@ struct Measured {
     double pairs = 0;            ///< median per frame
     std::size_t frames = 0;      ///< measured; fewer than the scene's after an interrupt
     std::size_t differing = 0;   ///< pairs that only it or only the first backend found, over all frames
-    std::size_t megabytes_x10 = 0;
+    double megabytes = 0;        ///< per body
     bool counts = false;
     QueryCounts sums;            ///< over all frames, if it counts
-    std::vector<double> total_of_frame; ///< ms
+    std::vector<double> total_of_frame, pairs_of_frame; ///< ms
 };
 
 struct MeasureOptions {
     std::size_t rounds = 3;  ///< through all frames, backends taking turns; slow ones run once
+    int threads = 1;         ///< one: on one core
     bool cold = false;       ///< evict the caches before every frame
-    double slow_ms = 100;    ///< a frame of a slow one
 };
 
-/// Every backend in turn through all frames of the scene, one thread. Pairs are compared with those of the first backend, frame by frame.
+/// Every backend in turn through all frames of the scene. Pairs are compared with those of the first backend, frame by frame.
 std::vector<Measured> measure(const CollideScene& scene, const std::vector<BackendKind>& kinds, const MeasureOptions& options);
 
 } // namespace cinch

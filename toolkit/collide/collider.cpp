@@ -15,14 +15,6 @@ namespace {
 
 constexpr std::size_t tests_per_task = 512, clusters_per_task = 128, tasks_at_once = 64;
 
-// Which children a pair of overlapping BVs is replaced by: the larger one's, both's where they are alike. A matter of the rest shapes
-// alone, so that the order of the leaves is.
-BoxTest children(const LazyRefit::Link& a, std::uint32_t bv_a, const LazyRefit::Link& b, std::uint32_t bv_b)
-{
-    const bool open_a = !a.is_leaf() && (b.is_leaf() || !(2 * a.size < b.size)), open_b = !b.is_leaf() && (a.is_leaf() || !(2 * b.size < a.size));
-    return {open_a ? a.child | BoxTest::both : bv_a, open_b ? b.child | BoxTest::both : bv_b};
-}
-
 } // namespace
 
 void Collider::add(const Bvh& bvh, const DeformableSurface& surface)
@@ -143,7 +135,7 @@ void Collider::descend()
         const std::size_t begin = tests_.size();
         for (std::size_t i = pair.begin; i < pair.end; ++i) {
             const BvPair& bvs = level_[i];
-            const BoxTest test = children(a.link(bvs.a), bvs.a, b.link(bvs.b), bvs.b);
+            const BoxTest test = children_of_pair(a, b, bvs);
             if (test.a & BoxTest::both)
                 a.expand(bvs.a);
             if (test.b & BoxTest::both)
@@ -197,6 +189,19 @@ void Collider::test_level()
         counts_.box_tests += (test.a & BoxTest::both ? 2u : 1u) * (test.b & BoxTest::both ? 2u : 1u);
 }
 
+void Collider::follow_fronts()
+{
+    std::map<std::pair<std::uint32_t, std::uint32_t>, PairFront> kept; // of the pairs of bodies that overlap now
+    for (std::size_t p = 0; p < active_; ++p) {
+        BodyPair& pair = pairs_[p];
+        LazyRefit &a = trees_[pair.a], &b = trees_[pair.b];
+        PairFront& front = kept[{pair.a, pair.b}] = std::move(fronts_[{pair.a, pair.b}]);
+        counts_.box_tests += front.advance(a, b, {dop_side(options_.kdop), a.dop(0), b.dop(0), pair.shift.data()}, pair.leaves);
+    }
+    fronts_ = std::move(kept);
+    level_.clear();
+}
+
 bool Collider::find(Query query, const Sink& sink)
 {
     require_default_arithmetic();
@@ -206,6 +211,8 @@ bool Collider::find(Query query, const Sink& sink)
         found = true;
         return go_on = sink(some) && query != Query::any;
     };
+    if (!options_.keep_cut)
+        follow_fronts();
     while (!level_.empty()) {
         descend();
         if (query == Query::any && !test_leaves(query, tell))

@@ -1,23 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <compare>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <span>
 #include <vector>
 
 #include "toolkit/collide/kernel/box_kernel.hpp"
 #include "toolkit/collide/kernel/cluster_kernel.hpp"
+#include "toolkit/collide/pair_front.hpp"
+#include "toolkit/collide/pair_list.hpp"
 #include "toolkit/hierarchy/lazy_refit.hpp"
 
 namespace cinch {
-
-/// Two triangles that intersect: indices of bodies, body_a < body_b, and of triangles of their meshes.
-struct TrianglePair {
-    std::uint32_t body_a, triangle_a, body_b, triangle_b;
-    auto operator<=>(const TrianglePair&) const = default;
-};
 
 /// What is asked of a query.
 enum class Query : std::uint8_t {
@@ -84,6 +80,7 @@ private:
     };
 
     void sweep();
+    void follow_fronts();
     void set_shift(BodyPair& pair) const;
     void descend(); ///< by one level
     void test_level();
@@ -99,6 +96,7 @@ private:
 
     std::vector<BodyPair> pairs_; ///< the first active_ are this frame's, by a, then b
     std::size_t active_ = 0;
+    std::map<std::pair<std::uint32_t, std::uint32_t>, PairFront> fronts_; ///< with keep_cut = false
     std::vector<BvPair> level_, overlapping_;
     std::vector<BoxTest> tests_;
     std::vector<Piece> pieces_;

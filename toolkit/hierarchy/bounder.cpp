@@ -100,6 +100,10 @@ Bounder::Bounder(const Bvh& bvh, const DeformableSurface& surface, const RefitOp
     if (!is_kdop(options.kdop))
         throw std::invalid_argument("refit: k must be 6, 14, 18 or 26");
     require_default_arithmetic();
+    const bool by_points = options.methods.contains(Method::support) || options.methods.contains(Method::linear) || options.methods.contains(Method::best);
+    if ((bvh.detail == RestDetail::boxes && (by_points || options.methods.contains(Method::local))) ||
+        (bvh.detail == RestDetail::inner && by_points && leaves == Leaves::included))
+        throw std::invalid_argument("refit: the BVH was built without the rest data that these methods need (RestDetail)");
     for (const Method method : {Method::convex, Method::eq12, Method::limited, Method::local, Method::support, Method::linear, Method::best}) {
         if (!options.methods.contains(method))
             continue;

@@ -90,12 +90,18 @@ void require_weights_of_mesh(const DeformableSurface& surface)
         throw std::invalid_argument("build_bvh: the weights are not those of the mesh");
 }
 
-Bvh with_rest_data(const DeformableSurface& surface, Bvh bvh)
+Bvh with_rest_data(const DeformableSurface& surface, Bvh bvh, RestDetail detail)
 {
+    bvh.detail = detail;
     set_boxes(surface, bvh);
     orient_boxes(surface, bvh);
+    if (detail == RestDetail::boxes) {
+        for (Bv& bv : bvh.bvs)
+            bv.pivot = bv.box.centre;
+        return bvh;
+    }
     fit_weight_models(surface, bvh);
-    choose_points(surface, bvh);
+    choose_points(surface, bvh, detail == RestDetail::all);
     return bvh;
 }
 
@@ -114,7 +120,7 @@ std::vector<Vec3> scaled_centroids(const TriangleMesh& mesh)
 
 } // namespace
 
-Bvh build_bvh(const DeformableSurface& surface, std::size_t leaf_triangles)
+Bvh build_bvh(const DeformableSurface& surface, std::size_t leaf_triangles, RestDetail detail)
 {
     if (leaf_triangles == 0)
         throw std::invalid_argument("build_bvh: a leaf needs at least one triangle");
@@ -123,10 +129,10 @@ Bvh build_bvh(const DeformableSurface& surface, std::size_t leaf_triangles)
         return {};
     Bvh bvh;
     split_all(scaled_centroids(surface.mesh), leaf_triangles, bvh);
-    return with_rest_data(surface, std::move(bvh));
+    return with_rest_data(surface, std::move(bvh), detail);
 }
 
-Bvh build_bvh(const DeformableSurface& surface, ClusterSize leaf)
+Bvh build_bvh(const DeformableSurface& surface, ClusterSize leaf, RestDetail detail)
 {
     if (leaf.triangles == 0 || leaf.vertices < 3)
         throw std::invalid_argument("build_bvh: a leaf needs room for a triangle and its vertices");
@@ -140,7 +146,7 @@ Bvh build_bvh(const DeformableSurface& surface, ClusterSize leaf)
     Bvh bvh;
     split_all(mean_of_each(clusters, centroid), 1, bvh);
     expand(clusters, bvh);
-    return with_rest_data(surface, std::move(bvh));
+    return with_rest_data(surface, std::move(bvh), detail);
 }
 
 std::vector<std::uint32_t> vertices_of(const DeformableSurface& surface, const Bvh& bvh, const Bv& bv)

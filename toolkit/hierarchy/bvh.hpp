@@ -25,8 +25,16 @@ struct Bv {
     bool is_leaf() const { return first_child == 0; }
 };
 
+/// How much of the rest data is prepared; it takes most of the time.
+enum class RestDetail : std::uint8_t {
+    boxes, ///< what convex, corners, eq12 and limited need: boxes and weight intervals
+    inner, ///< everything but the extreme points of the leaves: enough for queries, whose leaves come from their vertices
+    all,
+};
+
 /// A binary tree of BVs over a surface, in flat arrays. BVs stand level by level, the root first, children after parents.
 struct Bvh {
+    RestDetail detail = RestDetail::all;
     std::vector<Bv> bvs;                 ///< empty for a mesh without triangles
     std::vector<std::uint32_t> level;    ///< level i is BVs [level[i], level[i+1]); the last entry is bvs.size()
     std::vector<std::uint32_t> triangle; ///< a permutation of the mesh's triangles
@@ -45,7 +53,7 @@ struct Bvh {
     RestBv rest(std::size_t bv) const
     {
         const Bv& b = bvs[bv];
-        auto mine = [&](const auto& all) { return std::span(all).subspan(b.first_influence, b.influence_count); };
+        auto mine = [&](const auto& all) { return all.empty() ? std::span(all) : std::span(all).subspan(b.first_influence, b.influence_count); };
         return {b.box, mine(node), {mine(l), mine(h)}, mine(local), mine(radius), b.pivot, mine(model),
                 std::span(point).subspan(b.first_point, b.point_count), b.slack, b.vertex_influences};
     }
@@ -53,10 +61,10 @@ struct Bvh {
 
 /// Median split along the longest axis of the covariance of the triangles' centroids, down to at most `leaf_triangles` ≥ 1 per
 /// leaf; ties are split by index, so the depth is logarithmic whatever the geometry. Deterministic.
-Bvh build_bvh(const DeformableSurface& surface, std::size_t leaf_triangles);
+Bvh build_bvh(const DeformableSurface& surface, std::size_t leaf_triangles, RestDetail detail = RestDetail::all);
 
 /// The same split over clusters of triangles, each of which becomes a leaf: fewer and fuller leaves, each a patch of the surface.
-Bvh build_bvh(const DeformableSurface& surface, ClusterSize leaf);
+Bvh build_bvh(const DeformableSurface& surface, ClusterSize leaf, RestDetail detail = RestDetail::all);
 
 /// The vertices of one BV's triangles, each once, in order of first use.
 std::vector<std::uint32_t> vertices_of(const DeformableSurface& surface, const Bvh& bvh, const Bv& bv);

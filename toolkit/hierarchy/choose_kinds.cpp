@@ -76,7 +76,7 @@ Trial attempt(const PackedBvh<double>& packed, std::span<const ProjectedMaps<dou
 // The start of λ that suits each BV best, for one kind, and what comes of it.
 Trial calibrate(const Bvh& bvh, const DeformableSurface& surface, Method kind, std::span<const ProjectedMaps<double>> frames, std::vector<double>& start)
 {
-    PackedBvh<double> packed = pack<double>(bvh, surface, std::vector<ChosenKind>(bvh.bvs.size(), {kind, {}, 0, 0, false}));
+    PackedBvh<double> packed = pack<double>(bvh, surface, std::vector<ChosenKind>(bvh.bvs.size(), {kind, {}, 0, 0, false}), bvh.detail == RestDetail::all);
     start.assign(bvh.bvs.size(), 0.0);
     Trial best = attempt(packed, frames);
     if (kind == Method::linear)

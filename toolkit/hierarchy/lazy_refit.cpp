@@ -91,6 +91,8 @@ void LazyRefit::begin(const BodyFrame& frame)
     full_ = !frame.positions.empty() || options_.update == Update::full || (options_.update == Update::automatic && 2 * touched > leaves_.leaves.size());
     if (full_)
         return refit_all();
+    if (!options_.keep_cut)
+        before_.clear();
     if (before_.empty())
         note(0);
     for (const std::uint32_t bv : before_)
@@ -158,6 +160,12 @@ void LazyRefit::expand(std::uint32_t bv)
     for (std::uint32_t c = link.child; c < link.child + 2; ++c)
         if (!current(c))
             note(c);
+}
+
+void LazyRefit::want(std::uint32_t bv)
+{
+    if (!current(bv))
+        note(bv);
 }
 
 void LazyRefit::supply()

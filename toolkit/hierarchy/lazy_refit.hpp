@@ -24,6 +24,7 @@ struct LazyOptions {
     Precision precision = Precision::float32;
     Update update = Update::automatic;
     RestShape rest_shape = RestShape::aabb; ///< for convex, eq12 and limited
+    bool keep_cut = true;   ///< false: every BV by the methods when it is wanted, as for a front of pairs
     std::size_t lanes = 16; ///< 4, 8 or 16: room for the triangles and vertices of every leaf
 };
 
@@ -77,6 +78,7 @@ public:
 
     /// A query looks at a BV's children: they are noted where they are not up to date, and supply() bounds all that were noted, in parallel.
     void expand(std::uint32_t bv);
+    void want(std::uint32_t bv); ///< the same for one BV
     void supply();
     bool current(std::uint32_t bv) const { return dop(bv)[dop_side(options_.kdop) - 1] == stamp_; }
 

@@ -183,12 +183,13 @@ Points choose(const TriangleMesh& mesh, const Bv& bv, std::vector<std::uint32_t>
 
 } // namespace
 
-void choose_points(const DeformableSurface& surface, Bvh& bvh)
+void choose_points(const DeformableSurface& surface, Bvh& bvh, bool leaves)
 {
     std::vector<Points> points(bvh.bvs.size());
     parallel_blocks(bvh.bvs.size(), 4, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i)
-            points[i] = choose(surface.mesh, bvh.bvs[i], vertices_of(surface, bvh, bvh.bvs[i]));
+            if (leaves || !bvh.bvs[i].is_leaf())
+                points[i] = choose(surface.mesh, bvh.bvs[i], vertices_of(surface, bvh, bvh.bvs[i]));
     });
     for (std::size_t i = 0; i < bvh.bvs.size(); ++i) {
         Bv& bv = bvh.bvs[i];

@@ -13,6 +13,6 @@ void orient_boxes(const DeformableSurface& surface, Bvh& bvh);
 /// Radii of the local balls, pivots and weight models.
 void fit_weight_models(const DeformableSurface& surface, Bvh& bvh);
 /// Up to 16 to 64 extreme points per BV, and their slack.
-void choose_points(const DeformableSurface& surface, Bvh& bvh);
+void choose_points(const DeformableSurface& surface, Bvh& bvh, bool leaves);
 
 } // namespace cinch

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/collide/collide_tables.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "experiments/report/number.hpp"
+#include "experiments/report/table.hpp"
+
+namespace cinch {
+namespace {
+
+using Rows = std::vector<std::vector<std::string>>;
+
+std::string ms(double x) { return x < 10 ? fmt::format("{:.3f}", x) : x < 100 ? fmt::format("{:.1f}", x) : fmt::format("{:.0f}", x); }
+std::string times(double x) { return x < 10 ? fmt::format("{:.2f}", x) : fmt::format("{:.0f}", x); }
+
+// The paper's Tables 3 and 4, ms: totals of full bottom-up AABBs and of spatial hashing, and refit, query and gain of both its variants.
+struct Paper {
+    double refit, query, load, hash_query; // Table 3
+    double aabb_refit, aabb_query, aabb_gain, obb_refit, obb_query, obb_gain; // Table 4
+};
+constexpr Paper paper[8] = {
+    {37.1, 2.12, 28.29, 41.63, 1.83, 5.72, 5.2, 2.82, 7.82, 3.7},      {37.1, 2.12, 28.29, 41.63, 2.36, 5.60, 4.9, 4.05, 8.48, 3.1},
+    {575.7, 5.89, 479.6, 1264.5, 4.54, 16.6, 27.5, 6.85, 21.89, 20.3}, {575.7, 5.89, 479.6, 1264.5, 5.77, 18.7, 23.7, 8.48, 25.37, 17.2},
+    {37.9, 2.48, 28.91, 44.32, 3.38, 10.0, 3.0, 3.89, 10.27, 2.9},     {37.9, 2.48, 28.91, 44.32, 3.26, 9.28, 3.2, 5.41, 13.00, 2.2},
+    {569.7, 8.84, 484.2, 1430.5, 6.87, 24.5, 18.4, 7.91, 26.98, 16.6}, {569.7, 8.84, 484.2, 1430.5, 8.23, 29.3, 15.4, 11.39, 38.6, 11.6}};
+
+// Place in Table 2, 1 to 8; 0 for other scenes.
+std::size_t ring(const std::string& scene)
+{
+    return scene.size() == 12 && scene.starts_with("santa-ring-") && scene.back() >= '1' && scene.back() <= '8' ? static_cast<std::size_t>(scene.back() - '0') : 0;
+}
+
+void print_scenes(const std::vector<SceneResult>& results)
+{
+    Rows rows;
+    for (const SceneResult& r : results)
+        rows.push_back({r.scene, grouped(r.bodies), grouped(r.vertices), grouped(r.nodes), fmt::format("{:.0f}", r.backends[0].pairs),
+                        fmt::format("{:.0f}", *std::max_element(r.backends[0].pairs_of_frame.begin(), r.backends[0].pairs_of_frame.end())), grouped(r.backends[0].frames)});
+    fmt::print("Scenes (Table 2); pairs: intersecting triangles per frame\n\n{}\n", table({"scene", "bodies", "vertices", "nodes", "pairs: median", "most", "frames"}, rows));
+}
+
+void print_table_3(const std::vector<SceneResult>& results)
+{
+    Rows rows;
+    for (const SceneResult& r : results) {
+        const Measured *full = r.of("refit-1"), *hash = r.of("hash");
+        if (!full && !hash)
+            continue;
+        std::vector<std::string> row{r.scene};
+        for (const Measured* m : {full, hash})
+            for (const double x : m ? std::vector{m->evaluate_ms + m->update_ms, m->query_ms, m->total_ms} : std::vector<double>(3, NAN))
+                row.push_back(std::isnan(x) ? "-" : ms(x));
+        const std::size_t n = ring(r.scene);
+        row.push_back(n ? fmt::format("{:.0f}", paper[n - 1].refit + paper[n - 1].query) : r.scene == "fishes" ? "418" : "-");
+        row.push_back(n ? fmt::format("{:.0f}", paper[n - 1].load + paper[n - 1].hash_query) : "-");
+        rows.push_back(row);
+    }
+    if (rows.empty())
+        return;
+    fmt::print("Full bottom-up AABBs (refit-1) and spatial hashing, ms (Table 3); refit and load\nwith the vertices' evaluation\n\n{}\n",
+               table({"scene", "refit", "query", "total", "load", "query", "total", "paper", "paper"}, rows));
+}
+
+void print_table_4(const std::vector<SceneResult>& results)
+{
+    Rows rows;
+    for (const SceneResult& r : results) {
+        const Measured *full = r.of("refit-1"), *aabb = r.of("eq12-aabb"), *obb = r.of("eq12-obb-14");
+        if (!aabb && !obb)
+            continue;
+        std::vector<std::string> row{r.scene};
+        const std::size_t n = ring(r.scene);
+        for (const Measured* m : {aabb, obb}) {
+            const double gain = n ? (m == aabb ? paper[n - 1].aabb_gain : paper[n - 1].obb_gain) : r.scene == "fishes" && m == aabb ? 12 : 0;
+            row.push_back(m ? ms(m->update_ms) : "-");
+            row.push_back(m ? ms(m->query_ms) : "-");
+            row.push_back(m ? ms(m->total_ms) : "-");
+            row.push_back(m && full ? times(full->total_ms / m->total_ms) : "-");
+            row.push_back(gain > 0 ? times(gain) : "-");
+        }
+        rows.push_back(row);
+    }
+    if (rows.empty())
+        return;
+    fmt::print("The paper's method, Eq. 12 with one triangle per leaf, ms (Table 4): AABB/AABB, then\nOBB/14-DOP; gain over refit-1, here and in the paper\n\n{}\n",
+               table({"scene", "refit", "query", "total", "gain", "paper", "refit", "query", "total", "gain", "paper"}, rows));
+}
+
+void print_backends(const SceneResult& r)
+{
+    Rows rows;
+    for (const Measured& m : r.backends)
+        rows.push_back({m.backend, m.evaluate_ms < 5e-4 ? "-" : ms(m.evaluate_ms), ms(m.update_ms), ms(m.query_ms), ms(m.total_ms),
+                        times(m.total_ms / r.backends[0].total_ms), fmt::format("{:.0f}", m.pairs), m.differing ? grouped(m.differing) : "-",
+                        fmt::format("{:.1f}", m.megabytes)});
+    fmt::print("{}, ms per frame (medians over {} frames)\n\n{}\n", r.scene, r.backends[0].frames,
+               table({"", "evaluate", "update", "query", "total", "times", "pairs", "differ", "MB/body"}, rows));
+}
+
+void print_counts(const std::vector<SceneResult>& results)
+{
+    Rows rows;
+    for (const SceneResult& r : results) {
+        const Measured& m = r.backends[0];
+        if (!m.counts)
+            continue;
+        const QueryCounts& c = m.sums;
+        auto per_frame = [&](auto x) { return fmt::format("{:.0f}", static_cast<double>(x) / static_cast<double>(m.frames)); };
+        const double tests = std::max<double>(1, static_cast<double>(c.triangle_tests));
+        rows.push_back({r.scene, per_frame(c.updates.bounds), per_frame(c.updates.leaves), per_frame(c.updates.vertices), per_frame(c.box_tests), per_frame(c.leaf_pairs),
+                        per_frame(c.triangle_tests), fmt::format("{:.2f}", 100 * (1 - static_cast<double>(c.in_double + c.in_exact) / tests)),
+                        fmt::format("{:.2f}", 100 * static_cast<double>(c.in_double) / tests), fmt::format("{:.3f}", 100 * static_cast<double>(c.in_exact) / tests)});
+    }
+    if (rows.empty())
+        return;
+    fmt::print("What '{}' did, means per frame; triangle pairs decided in float, double, exactly, %\n\n{}\n", results[0].backends[0].backend,
+               table({"scene", "bounds", "leaves", "vertices", "boxes", "leaf p.", "triangles", "float", "double", "exact"}, rows));
+}
+
+// Of the frames in order of the default's contacts, the quarter with the most and so on: the worst median ratio to the best full refit.
+double worst_quarter(const SceneResult& r, const Measured& own, const std::vector<const Measured*>& full)
+{
+    std::vector<std::size_t> order(own.total_of_frame.size());
+    for (std::size_t i = 0; i < order.size(); ++i)
+        order[i] = i;
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return r.backends[0].pairs_of_frame[a] < r.backends[0].pairs_of_frame[b]; });
+    double worst = 0;
+    for (std::size_t q = 0; q < 4; ++q) {
+        std::vector<double> ratios;
+        for (std::size_t i = q * order.size() / 4; i < (q + 1) * order.size() / 4; ++i) {
+            double best = INFINITY;
+            for (const Measured* m : full)
+                if (order[i] < m->total_of_frame.size())
+                    best = std::min(best, m->total_of_frame[order[i]]);
+            ratios.push_back(own.total_of_frame[order[i]] / best);
+        }
+        if (ratios.empty())
+            continue;
+        std::nth_element(ratios.begin(), ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2), ratios.end());
+        worst = std::max(worst, ratios[ratios.size() / 2]);
+    }
+    return worst;
+}
+
+} // namespace
+
+const Measured* SceneResult::of(const std::string& backend) const
+{
+    for (const Measured& m : backends)
+        if (m.backend == backend)
+            return &m;
+    return nullptr;
+}
+
+std::vector<Figure> figures_of(const std::vector<SceneResult>& results, bool cold)
+{
+    constexpr double over_embree[8] = {5, 3.3, 35, 35, 2.7, 2.7, 8, 8}, over_refit[8] = {2.5, 1.7, 17, 17, 1.7, 1.7, 4.5, 4.5};
+    std::vector<Figure> figures;
+    auto ratio = [&](const std::string& what, double measured, double target) {
+        figures.push_back({what, times(measured), fmt::format(">= {}", target), measured >= target});
+    };
+    for (const SceneResult& r : results) {
+        const Measured *own = r.of("cinch"), *embree = r.of("embree"), *refit = r.of("refit-16"), *full = r.of("cinch-full");
+        const std::size_t n = ring(r.scene);
+        if (!own)
+            continue;
+        const double share = cold ? 0.5 : 1;
+        if (n && embree)
+            ratio(r.scene + ": Embree / cinch", embree->total_ms / own->total_ms, share * over_embree[n - 1]);
+        if (n && refit)
+            ratio(r.scene + ": own full refit, 16 / cinch", refit->total_ms / own->total_ms, share * over_refit[n - 1]);
+        if (refit && full) {
+            const double worst = worst_quarter(r, *own, {refit, full});
+            figures.push_back({r.scene + ": cinch / best full refit, worst quarter", times(worst), "<= 1.1", worst <= 1.1});
+        }
+        if (n && r.vertices > 40000)
+            figures.push_back({r.scene + ": MB per body", fmt::format("{:.1f}", own->megabytes), "<= 16", own->megabytes <= 16});
+    }
+    return figures;
+}
+
+std::vector<Slope> slopes_of(const std::vector<SceneResult>& results)
+{
+    std::vector<Slope> slopes;
+    auto find = [&](const std::string& scene) -> const SceneResult* {
+        for (const SceneResult& r : results)
+            if (r.scene == scene && r.of("cinch"))
+                return &r;
+        return nullptr;
+    };
+    auto between = [&](const char* what, const std::string& from, const std::string& to, auto size) {
+        const SceneResult *a = find(from), *b = find(to);
+        if (a && b)
+            slopes.push_back({fmt::format("{}, {} to {}", what, from, to),
+                              log_slope({static_cast<double>(size(*a)), static_cast<double>(size(*b))}, {a->of("cinch")->total_ms, b->of("cinch")->total_ms})});
+    };
+    for (const auto& [from, to] : {std::pair("1", "3"), std::pair("2", "4"), std::pair("5", "7"), std::pair("6", "8")})
+        between("vertices", std::string("santa-ring-") + from, std::string("santa-ring-") + to, [](const SceneResult& r) { return r.vertices; });
+    for (const auto& [from, to] : {std::pair("1", "2"), std::pair("3", "4"), std::pair("5", "6"), std::pair("7", "8")})
+        between("nodes", std::string("santa-ring-") + from, std::string("santa-ring-") + to, [](const SceneResult& r) { return r.nodes; });
+    for (const auto& [from, to] : {std::pair("fishes/6", "fishes/12"), std::pair("fishes/12", "fishes")})
+        between("bodies", from, to, [](const SceneResult& r) { return r.bodies; });
+    for (const SceneResult& r : results)
+        if (const Measured* own = r.of("cinch")) {
+            std::vector<double> pairs, total;
+            for (std::size_t f = 0; f < own->total_of_frame.size(); ++f)
+                if (own->pairs_of_frame[f] >= 10) {
+                    pairs.push_back(own->pairs_of_frame[f]);
+                    total.push_back(own->total_of_frame[f]);
+                }
+            if (pairs.size() >= 10)
+                slopes.push_back({"contacts, " + r.scene, log_slope(pairs, total)});
+        }
+    return slopes;
+}
+
+void print_tables(const std::vector<SceneResult>& results, bool cold)
+{
+    print_scenes(results);
+    print_table_3(results);
+    print_table_4(results);
+    for (const SceneResult& r : results)
+        print_backends(r);
+    fmt::print("times: the total over that of '{}'; differ: pairs that only one of the two found.\nevaluate: all vertices up front, by SIMD with the bits of the exact test; '-' where\n"
+               "they are evaluated on demand. {}\n\n",
+               results[0].backends[0].backend, cold ? "Caches evicted before every frame." : "Every backend runs through all frames in turn.");
+    print_counts(results);
+    if (const auto figures = figures_of(results, cold); !figures.empty()) {
+        print(figures);
+        fmt::print("\n");
+    }
+    if (const auto slopes = slopes_of(results); !slopes.empty()) {
+        fmt::print("exponents of the time of 'cinch'\n");
+        for (const Slope& s : slopes)
+            fmt::print("{:<44} {:>7.2f}\n", s.what, s.exponent);
+        fmt::print("\n");
+    }
+}
+
+} // namespace cinch
