@@ -26,7 +26,7 @@ struct Scene {
         for (const auto& frame : e.frames) {
             project<T>(frame, packed.rest, kdop, rounding, maps);
             std::vector<double> supports(bvh.bvs.size() * static_cast<std::size_t>(kdop));
-            bound_packed<T>({packed.bvs, packed.node, packed.value, &maps, rounding, passes, remember ? remembered.data() : nullptr}, 0, bvh.bvs.size(),
+            bound_packed<T>({packed.bvs, packed.node, packed.value, &maps, rounding, passes, nullptr, remember ? remembered.data() : nullptr}, 0, bvh.bvs.size(),
                             scratch, supports);
             all.insert(all.end(), supports.begin(), supports.end());
         }

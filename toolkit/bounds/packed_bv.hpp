@@ -21,7 +21,7 @@ constexpr bool takes_one_by_one(Method kind) { return kind == Method::support ||
 ///   convex, eq12, limited   l, r
 ///   local                   l, r, centre (3), half (3), radius: the box cut by a ball about its centre
 /// Of those for few, per block of extreme points the x of 4 points relative to the pivot, their y and their z; then per simulation node:
-///   support                 centre (3), 1, half (3), 0, l, r, mean, 0
+///   support                 centre (3), half (3), l, r, mean
 ///   linear                  gradient (3), residual, moment (3), mean
 /// with r = h − l. The real weights lie in [l, l + r], and Σ mean = 1 exactly.
 template <class T> struct PackedBv {
@@ -41,7 +41,7 @@ template <class T> struct PackedBv {
     T error_factor = 1;             ///< of the per-node error, see rounding.hpp
 
     static constexpr std::size_t rows(Method kind) { return kind == Method::local ? 9 : 2; }      ///< of a block; kinds for many
-    static constexpr std::size_t values(Method kind) { return kind == Method::support ? 12 : 8; } ///< of a simulation node; kinds for few
+    static constexpr std::size_t values(Method kind) { return kind == Method::support ? 9 : 8; } ///< of a simulation node; kinds for few
 };
 
 } // namespace cinch

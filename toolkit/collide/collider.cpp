@@ -251,6 +251,13 @@ bool Collider::any()
 // The leaf pairs that were not tested yet, a few tasks' worth at a time. False once the sink has had enough.
 bool Collider::test_leaves(Query query, const Sink& sink)
 {
+    for (std::size_t p = 0; p < active_; ++p)
+        for (std::size_t i = pairs_[p].tested; i < pairs_[p].leaves.size(); ++i) {
+            trees_[pairs_[p].a].want_slot(pairs_[p].leaves[i].a);
+            trees_[pairs_[p].b].want_slot(pairs_[p].leaves[i].b);
+        }
+    for (LazyRefit& tree : trees_)
+        tree.supply();
     const std::size_t at_once = query == Query::any ? 1 : tasks_at_once;
     for (std::size_t p = 0; p < active_;) {
         std::size_t pieces = 0;

@@ -42,7 +42,8 @@ template <class T> struct KernelPart {
     }
     KernelInput<T> input(const ProjectedMaps<T>& maps, const RefitOptions& options) const
     {
-        return {packed.bvs, packed.node, packed.value, &maps, options.rounding, options.passes, remembered.empty() ? nullptr : remembered.data()};
+        return {packed.bvs, packed.node, packed.value, &maps, options.rounding, options.passes, packed.place.empty() ? nullptr : packed.place.data(),
+                remembered.empty() ? nullptr : remembered.data()};
     }
 };
 
@@ -171,9 +172,11 @@ void Bounder::bound(std::size_t first, std::size_t last, std::span<double> suppo
 
 void Bounder::prefetch(std::uint32_t bv) const
 {
-    for (const auto& part : parts_->single)
-        for (std::size_t byte = 0; byte < sizeof part->packed.bvs[bv]; byte += 64)
-            hwy::Prefetch(reinterpret_cast<const char*>(&part->packed.bvs[bv]) + byte);
+    for (const auto& part : parts_->single) {
+        const auto& packed = part->packed.bvs[part->packed.place.empty() ? bv : part->packed.place[bv]];
+        for (std::size_t byte = 0; byte < sizeof packed; byte += 64)
+            hwy::Prefetch(reinterpret_cast<const char*>(&packed) + byte);
+    }
 }
 
 void Bounder::bound(std::span<const std::uint32_t> list, float* dops) const

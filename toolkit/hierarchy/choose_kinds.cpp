@@ -73,27 +73,51 @@ Trial attempt(const PackedBvh<double>& packed, std::span<const ProjectedMaps<dou
     return trial;
 }
 
+// From the order of a packed tree without leaves to that of the BVs; leaves have nothing.
+template <class T> void spread(std::span<const std::uint32_t> place, const Bvh& bvh, std::size_t each, std::vector<T>& all)
+{
+    const std::size_t packed = all.size() / each;
+    std::vector<T> out(bvh.bvs.size() * each, T(0));
+    for (std::size_t i = 0; i < bvh.bvs.size(); ++i)
+        if (!bvh.bvs[i].is_leaf() && place[i] < packed)
+            std::copy_n(all.begin() + static_cast<std::ptrdiff_t>(place[i] * each), each, out.begin() + static_cast<std::ptrdiff_t>(i * each));
+    all = std::move(out);
+}
+
 // The start of λ that suits each BV best, for one kind, and what comes of it.
 Trial calibrate(const Bvh& bvh, const DeformableSurface& surface, Method kind, std::span<const ProjectedMaps<double>> frames, std::vector<double>& start)
 {
     PackedBvh<double> packed = pack<double>(bvh, surface, std::vector<ChosenKind>(bvh.bvs.size(), {kind, {}, 0, 0, false}), bvh.detail == RestDetail::all);
-    start.assign(bvh.bvs.size(), 0.0);
+    const std::size_t bvs = packed.bvs.size();
+    start.assign(bvs, 0.0);
     Trial best = attempt(packed, frames);
-    if (kind == Method::linear)
-        return best;
     for (const double candidate : {0.3, 0.5, 0.7, 0.8, 0.85, 0.9, 0.95, 1.0}) {
+        if (kind == Method::linear)
+            break; // no λ
         for (PackedBv<double>& bv : packed.bvs)
             bv.start = candidate;
         const Trial trial = attempt(packed, frames);
-        for (std::size_t i = 0; i < trial.width.size(); ++i) {
+        for (std::size_t i = 0; i < bvs; ++i) {
             if (!(trial.width[i] < best.width[i]))
                 continue;
             start[i] = candidate;
             best.width[i] = trial.width[i];
             for (std::size_t f = 0; f < frames.size(); ++f)
-                std::copy_n(&trial.supports[(f * bvh.bvs.size() + i) * kdop], kdop, &best.supports[(f * bvh.bvs.size() + i) * kdop]);
+                std::copy_n(&trial.supports[(f * bvs + i) * kdop], kdop, &best.supports[(f * bvs + i) * kdop]);
         }
     }
+    if (packed.place.empty())
+        return best;
+    spread<double>(packed.place, bvh, 1, start);
+    spread<double>(packed.place, bvh, 1, best.width);
+    std::vector<double> all;
+    for (std::size_t f = 0; f < frames.size(); ++f) {
+        const auto first = best.supports.begin() + static_cast<std::ptrdiff_t>(f * bvs * kdop);
+        std::vector<double> frame(first, first + static_cast<std::ptrdiff_t>(bvs * kdop));
+        spread<double>(packed.place, bvh, kdop, frame);
+        all.insert(all.end(), frame.begin(), frame.end());
+    }
+    best.supports = std::move(all);
     return best;
 }
 

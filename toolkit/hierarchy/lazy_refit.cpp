@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <stdexcept>
 
@@ -142,8 +143,8 @@ void LazyRefit::note(std::uint32_t bv)
     stamp(bv);
     if (links_[bv].is_leaf()) {
         hwy::Prefetch(&leaves_.leaves[links_[bv].child]);
-        slot_of_[links_[bv].child] = static_cast<std::uint32_t>(slots_used_);
-        wanted_leaves_.emplace_back(bv, static_cast<std::uint32_t>(slots_used_++));
+        slot_of_[links_[bv].child] = full_ ? no_slot : static_cast<std::uint32_t>(slots_used_++);
+        wanted_leaves_.emplace_back(bv, slot_of_[links_[bv].child]);
     } else {
         bounder_.prefetch(bv);
         wanted_.push_back(bv);
@@ -168,6 +169,15 @@ void LazyRefit::want(std::uint32_t bv)
         note(bv);
 }
 
+void LazyRefit::want_slot(std::uint32_t leaf)
+{
+    std::uint32_t& slot = slot_of_[links_[leaf].child];
+    if (slot != no_slot)
+        return;
+    slot = static_cast<std::uint32_t>(slots_used_++);
+    wanted_leaves_.emplace_back(leaf, slot);
+}
+
 void LazyRefit::supply()
 {
     if (!wanted_.empty()) {
@@ -182,7 +192,7 @@ void LazyRefit::supply()
         slots_.resize(std::min(std::max(2 * slots_.size(), slots_used_ * slot_floats), leaves_.leaves.size() * slot_floats));
     jobs_.clear();
     for (const auto& [bv, slot] : wanted_leaves_) {
-        jobs_.push_back({links_[bv].child, slots_.data() + slot * slot_floats, dop(bv)});
+        jobs_.push_back({links_[bv].child, slot == no_slot ? nullptr : slots_.data() + slot * slot_floats, dop(bv)});
         counts_.vertices += leaves_.leaves[links_[bv].child].vertices;
     }
     counts_.leaves += jobs_.size();
@@ -194,7 +204,7 @@ void LazyRefit::supply()
     wanted_leaves_.clear();
 }
 
-// The leaves' corners from the positions, relative to the first: (x − O) − R passes two roundings of doubles, and one to float.
+// The leaves' vertices from the positions, relative to the first: (x − O) − R passes two roundings of doubles, and one to float.
 void LazyRefit::place_leaves()
 {
     const std::size_t lanes = leaves_.lanes, side = dop_side(options_.kdop);
@@ -209,30 +219,33 @@ void LazyRefit::place_leaves()
                 place.reference[r] = static_cast<float>(start[r] - origin_[r]);
                 out = std::max(out, std::abs(place.reference[r]));
             }
-            for (std::size_t t = 0; t < lanes; ++t) {
+            const std::uint8_t* const corner = reinterpret_cast<const std::uint8_t*>(leaves_.value.data() + leaf.first + LeafRun{lanes, leaf.nodes}.corners());
+            std::memcpy(job.slot + 3 * lanes, corner, 3 * lanes);
+            for (std::size_t t = 0; t < lanes; ++t) { // every vertex is a corner
                 const Triangle& triangle = surface_.mesh.triangles[triangle_[leaf.first_triangle + std::min<std::size_t>(t, leaf.triangles - 1)]];
                 for (std::size_t c = 0; c < 3; ++c)
                     for (std::size_t r = 0; r < 3; ++r) {
                         const int row = static_cast<int>(r);
                         const auto x = static_cast<float>((now_.positions[triangle[c]][row] - origin_[row]) - static_cast<double>(place.reference[r]));
-                        job.slot[(3 * c + r) * lanes + t] = x;
+                        job.slot[r * lanes + corner[c * lanes + t]] = x;
                         far = std::max(far, std::abs(x));
                     }
             }
+            for (std::size_t r = 0; r < 3; ++r)
+                std::fill_n(job.slot + r * lanes + leaf.vertices, lanes - leaf.vertices, job.slot[r * lanes]);
             place.error = succ(2 * unit_roundoff_of<float> * far + 0x1p-50f * (far + out));
             place.difference = 2 * place.error;
             if (!(far < std::numeric_limits<float>::infinity() && out < std::numeric_limits<float>::infinity()))
                 place.error = place.difference = std::numeric_limits<float>::infinity();
             for (std::size_t a = 0; a < axes.size(); ++a) {
                 float most = -std::numeric_limits<float>::infinity(), least = -most, middle = 0;
-                for (std::size_t c = 0; c < 3; ++c)
-                    for (std::size_t t = 0; t < lanes; ++t) {
-                        float along = 0;
-                        for (std::size_t r = 0; r < 3; ++r)
-                            along += static_cast<float>(axes[a][r]) * job.slot[(3 * c + r) * lanes + t];
-                        most = std::max(most, along);
-                        least = std::min(least, along);
-                    }
+                for (std::size_t v = 0; v < lanes; ++v) {
+                    float along = 0;
+                    for (std::size_t r = 0; r < 3; ++r)
+                        along += static_cast<float>(axes[a][r]) * job.slot[r * lanes + v];
+                    most = std::max(most, along);
+                    least = std::min(least, along);
+                }
                 for (std::size_t r = 0; r < 3; ++r)
                     middle += static_cast<float>(axes[a][r]) * place.reference[r];
                 const float wider = succ(3 * place.error + 16 * unit_roundoff_of<float> * (far + out)); // sums of up to three pass 2 roundings

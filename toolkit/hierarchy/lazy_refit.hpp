@@ -80,9 +80,11 @@ public:
     void expand(std::uint32_t bv);
     void want(std::uint32_t bv); ///< the same for one BV
     void supply();
+    /// The vertices of a leaf that is current: after a full update they are kept only of those that are wanted, from supply() on.
+    void want_slot(std::uint32_t leaf);
     bool current(std::uint32_t bv) const { return dop(bv)[dop_side(options_.kdop) - 1] == stamp_; }
 
-    /// Of a leaf that is current. See leaf_slot_floats.
+    /// Of a leaf that is current, and wanted. See LeafPlace.
     const float* slot(std::uint32_t bv) const { return slots_.data() + slot_of_[links_[bv].child] * leaf_slot_floats(leaves_.lanes); }
     const PackedLeaf& leaf(std::uint32_t bv) const { return leaves_.leaves[links_[bv].child]; }
     std::size_t lanes() const { return leaves_.lanes; }

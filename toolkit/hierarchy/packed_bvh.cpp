@@ -183,11 +183,11 @@ private:
     {
         const auto means = rounded_means(rest);
         for (std::size_t j = 0; j < rest.node.size(); ++j) {
-            T own[12] = {0, 0, 0, 1};
-            put_box(rest.local[j], out_.rest.origin, own, own + 4);
-            put_interval(rest, j, own[8], own[9]);
-            own[10] = static_cast<T>(means[j]);
-            out_.value.insert(out_.value.end(), own, own + 12);
+            T own[9];
+            put_box(rest.local[j], out_.rest.origin, own, own + 3);
+            put_interval(rest, j, own[6], own[7]);
+            own[8] = static_cast<T>(means[j]);
+            out_.value.insert(out_.value.end(), own, own + 9);
         }
     }
 
@@ -304,16 +304,18 @@ template <class T> PackedBvh<T> pack(const Bvh& bvh, const DeformableSurface& su
     PackedBvh<T> out;
     out.rest = rest_extent(bvh, surface, !kinds.empty() && kinds[0].oriented ? RestShape::obb : RestShape::aabb);
     Packer<T> packer(surface, out);
+    if (!leaves)
+        out.place.assign(bvh.bvs.size(), 0);
     auto wanted = [&](std::size_t i) { return leaves || !bvh.bvs[i].is_leaf(); };
-    for (std::size_t i = 0; i < bvh.bvs.size(); ++i) {
-        if (wanted(i))
+    for (std::size_t i = 0; i < bvh.bvs.size(); ++i)
+        if (wanted(i)) {
+            if (!leaves)
+                out.place[i] = static_cast<std::uint32_t>(out.bvs.size());
             packer.pack(bvh.rest(i), kinds[i].kind, kinds[i].start, kinds[i].oriented ? &bvh.bvs[i].oriented : nullptr);
-        else
-            out.bvs.emplace_back();
-    }
+        }
     for (std::size_t i = 0; i < bvh.bvs.size(); ++i)
         if (kinds[i].also && wanted(i)) {
-            out.bvs[i].also = static_cast<std::uint32_t>(out.bvs.size());
+            out.bvs[leaves ? i : out.place[i]].also = static_cast<std::uint32_t>(out.bvs.size());
             packer.pack(bvh.rest(i), *kinds[i].also, kinds[i].also_start, nullptr);
         }
     out.bvs.shrink_to_fit();

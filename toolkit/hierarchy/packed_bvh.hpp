@@ -12,11 +12,12 @@ namespace cinch {
 /// What the kernels need of a Bvh, in T, each BV with one kind of bound. Stands alone: the Bvh may go.
 template <class T> struct PackedBvh {
     std::vector<PackedBv<T>> bvs; ///< as Bvh::bvs, then those that PackedBv::also names
+    std::vector<std::uint32_t> place; ///< without leaves: where in bvs each BV stands; else empty
     std::vector<std::uint32_t> node;
     AlignedVector<T> value;
     RestExtent rest;
 
-    std::size_t bytes() const { return bvs.size() * sizeof(bvs[0]) + node.size() * sizeof(node[0]) + value.size() * sizeof(value[0]); }
+    std::size_t bytes() const { return bvs.size() * sizeof(bvs[0]) + (place.size() + node.size()) * sizeof(node[0]) + value.size() * sizeof(value[0]); }
 };
 
 /// One kind of bound for a BV or two, and where their λ begin (PackedBv::start).
@@ -37,7 +38,7 @@ RestExtent rest_extent(const Bvh& bvh, const DeformableSurface& surface, RestSha
 std::vector<ChosenKind> choose_kinds(const Bvh& bvh, const DeformableSurface& surface, Method method, RestShape shape = RestShape::aabb,
                                      double worth_twice = 0.96);
 
-/// Rounds everything outward to T. Leaves have no data but their place if they are not wanted. Throws std::length_error for float and
+/// Rounds everything outward to T. Leaves are left out if they are not wanted. Throws std::length_error for float and
 /// a BV of more than 65,536 simulation nodes.
 template <class T> PackedBvh<T> pack(const Bvh& bvh, const DeformableSurface& surface, std::span<const ChosenKind> kinds, bool leaves = true);
 

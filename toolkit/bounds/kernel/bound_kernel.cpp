@@ -307,11 +307,12 @@ template <class T, std::size_t kAxes>
 void bound_list(const KernelInput<T>& in, std::span<const std::uint32_t> list, KernelScratch<T>& scratch, std::size_t side, float* dops)
 {
     for (std::size_t n = 0; n < list.size(); ++n) {
+        auto at = [&](std::uint32_t bv) { return in.place ? in.place[bv] : bv; };
         if (n + 2 < list.size())
-            prefetch(in, in.bvs[list[n + 2]]);
-        const std::uint32_t i = list[n];
+            prefetch(in, in.bvs[at(list[n + 2])]);
+        const std::uint32_t i = at(list[n]);
         const PackedBv<T>& bv = in.bvs[i];
-        float* const dop = dops + std::size_t{i} * 2 * side;
+        float* const dop = dops + std::size_t{list[n]} * 2 * side;
         Bound<T, kAxes> bound;
         bound_one<T, kAxes>(in, i, scratch, bound);
         finish<T, kAxes>(in, bv, bound, side, dop);

@@ -22,6 +22,7 @@ template <class T> struct KernelInput {
     const ProjectedMaps<T>* maps;
     Rounding rounding = Rounding::proven;
     int passes = 1;      ///< evaluations of D for local and support; 0 leaves them at the greatest b
+    const std::uint32_t* place = nullptr; ///< for lists: where in bvs each BV stands; null: where it is in the tree
     T* remembered = nullptr; ///< k pairs per entry of bvs, NaN at first: where λ begins instead, and its step (choose_lambda.hpp); or null
 };
 

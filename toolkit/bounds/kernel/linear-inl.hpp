@@ -22,15 +22,13 @@ void linear(const PackedBv<T>& bv, const ProjectedMaps<T>& maps, const std::uint
 {
     constexpr std::size_t stride = PackedBv<T>::values(Method::linear); // gradient (3), residual, moment (3), mean
     mean_map<T, kAxes>(bv, maps, node, value, stride, 7, mean, error);
-    HWY_ALIGN static constexpr T last[4] = {0, 0, 0, 1};
-    const auto z = Rows<T>::each_row(bv.pivot), fourth = Rows<T>::each_row(last);
+    const auto z = Rows<T>::each_row(bv.pivot);
     for (std::size_t c = 0; c < row_chunks<kAxes>; ++c) {
         // Per row Σ P g, Σ |P| residual, and Σ |dq| moment; nodes alternately in two sums.
         Rows<T> direction[2] = {Rows<T>::all(0), Rows<T>::all(0)}, moment[2] = {direction[0], direction[0]};
         auto add = [&](std::size_t j, std::size_t to) HWY_ATTR {
             const auto d = Rows<T>::load(map_of<T, kAxes>(maps, node[j]) + 16 * c) - mean.chunk[c], p = row_sum(d * z);
-            const auto p_or_size = each(p, fourth, [](auto x, auto f) { return hn::IfThenElse(hn::Gt(f, hn::Zero(typename Rows<T>::D())), hn::Abs(x), x); });
-            direction[to] = fma(p_or_size, Rows<T>::each_row(value + j * stride), direction[to]);
+            direction[to] = fma(with_fourth(p, magnitude(p)), Rows<T>::each_row(value + j * stride), direction[to]);
             moment[to] = fma(magnitude(d), Rows<T>::each_row(value + j * stride + 4), moment[to]);
         };
         std::size_t j = 0;

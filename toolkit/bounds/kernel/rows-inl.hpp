@@ -125,6 +125,17 @@ template <class T> HWY_INLINE Rows<T> fma(const Rows<T>& a, const Rows<T>& b, co
     return x;
 }
 
+/// x, with the fourth lane of every row from y.
+template <class T> HWY_INLINE Rows<T> with_fourth(const Rows<T>& x, const Rows<T>& y)
+{
+    HWY_ALIGN static constexpr T fourth[4] = {0, 0, 0, 1};
+    const auto where = Rows<T>::each_row(fourth);
+    Rows<T> out;
+    for (std::size_t i = 0; i < Rows<T>::vectors; ++i)
+        out.v[i] = hn::IfThenElse(hn::Gt(where.v[i], hn::Zero(typename Rows<T>::D())), y.v[i], x.v[i]);
+    return out;
+}
+
 /// In every lane the sum of its row, (0 + 1) + (2 + 3).
 template <class T> HWY_INLINE Rows<T> row_sum(const Rows<T>& x)
 {

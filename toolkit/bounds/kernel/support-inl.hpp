@@ -13,8 +13,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace cinch::HWY_NAMESPACE {
 
-// Values of a node of the support kind: centre (3), 1, half (3), 0, l, r, mean.
-inline constexpr std::size_t support_l = 8, support_r = 9, support_mean = 10;
+// Values of a node of the support kind: centre (3), half (3), l, r, mean.
+inline constexpr std::size_t support_half = 3, support_l = 6, support_r = 7, support_mean = 8;
 
 /// Per axis along it in the even lanes of its row, against it in the odd ones.
 template <class T, std::size_t kAxes> using SidesInRows = Rows<T>[row_chunks<kAxes>];
@@ -35,10 +35,11 @@ HWY_INLINE void support_extrema(const PackedBv<T>& bv, const ProjectedMaps<T>& m
 {
     constexpr std::size_t stride = PackedBv<T>::values(Method::support);
     for (std::size_t c = 0; c < row_chunks<kAxes>; ++c) {
-        auto most = Rows<T>::all(-infinity_of<T>), mean = Rows<T>::all(0);
+        const auto one = Rows<T>::all(1), zero = Rows<T>::all(0);
+        auto most = Rows<T>::all(-infinity_of<T>), mean = zero;
         for (std::size_t j = 0; j < bv.count; ++j, b += 16) {
             const auto d = Rows<T>::load(map_of<T, kAxes>(maps, node[j]) + 16 * c) - reference.chunk[c];
-            const auto position = d * Rows<T>::each_row(value + j * stride), radius = magnitude(d) * Rows<T>::each_row(value + j * stride + 4);
+            const auto position = d * with_fourth(Rows<T>::each_row(value + j * stride), one), radius = magnitude(d) * with_fourth(Rows<T>::each_row(value + j * stride + support_half), zero);
             const auto sides = row_sums(radius + position, radius - position);
             sides.store(b);
             most = greater(sides, most);

@@ -27,8 +27,10 @@ template <std::size_t L> struct Boxes {
 
     HWY_INLINE Boxes(const float* slot, const float (&shift)[3])
     {
+        const std::uint8_t* const corner = corners_of(slot, L);
         for (std::size_t r = 0; r < 3; ++r) {
-            const auto a = Wide<L>::load(slot + r * L), b = Wide<L>::load(slot + (3 + r) * L), c = Wide<L>::load(slot + (6 + r) * L), by = Wide<L>::all(shift[r]);
+            const auto x = Wide<L>::load(slot + r * L), by = Wide<L>::all(shift[r]);
+            const auto a = lookup<L>(x, corner), b = lookup<L>(x, corner + L), c = lookup<L>(x, corner + 2 * L);
             low[r] = less(less(a, b), c) + by;
             high[r] = greater(greater(a, b), c) + by;
         }
@@ -84,11 +86,16 @@ template <std::size_t L> struct Candidates {
     std::uint8_t i[L * L + L], j[L * L + L]; // and what fills the last lanes
 };
 
-template <std::size_t L> HWY_INLINE void gather(const float* slot, const std::uint8_t* lane, const float (&shift)[3], Triangles<L>& out)
+template <std::size_t L> HWY_INLINE void gather(const float* slot, const std::uint8_t* triangle, const float (&shift)[3], Triangles<L>& out)
 {
-    for (std::size_t c = 0; c < 3; ++c)
+    const std::uint8_t* const corner = corners_of(slot, L);
+    for (std::size_t c = 0; c < 3; ++c) {
+        std::uint8_t vertex[16];
+        for (std::size_t n = 0; n < L; ++n)
+            vertex[n] = corner[c * L + triangle[n]];
         for (std::size_t r = 0; r < 3; ++r)
-            out.corner[c][r] = lookup<L>(Wide<L>::load(slot + (3 * c + r) * L), lane) + Wide<L>::all(shift[r]);
+            out.corner[c][r] = lookup<L>(Wide<L>::load(slot + r * L), vertex) + Wide<L>::all(shift[r]);
+    }
 }
 
 template <std::size_t L> void test_pair(const ClusterInput& in, const ClusterPair& pair, std::uint32_t index, std::vector<TriangleHit>& out, std::uint64_t& tests)

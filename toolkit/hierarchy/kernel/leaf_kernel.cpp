@@ -155,14 +155,6 @@ template <std::size_t L> HWY_INLINE void bound_vertices(const LeafInput& in, con
     }
 }
 
-// Corners of triangles from the vertices.
-template <std::size_t L> HWY_INLINE void place_corners(const Wide<L> (&p)[3], const std::uint8_t* corner, float* slot)
-{
-    for (std::size_t c = 0; c < 3; ++c)
-        for (std::size_t r = 0; r < 3; ++r)
-            lookup<L>(p[r], corner + c * L).store(slot + (3 * c + r) * L);
-}
-
 template <std::size_t L> void evaluate_leaf(const LeafInput& in, const LeafJob& job, float* maps)
 {
     const PackedLeaf& leaf = in.leaves[job.leaf];
@@ -173,7 +165,8 @@ template <std::size_t L> void evaluate_leaf(const LeafInput& in, const LeafJob& 
     const LeafPlace place = errors_of(nodes, leaf, static_cast<float>(in.vertex_error));
     if (!(place.error < infinity)) { // nothing is known of it
         if (job.slot) {
-            std::fill_n(job.slot, leaf_slot_floats(L), 0.0f);
+            std::fill_n(job.slot, 3 * L, 0.0f);
+            std::memcpy(job.slot + 3 * L, value + run.corners(), 3 * L);
             place_of(job.slot, L) = {{0, 0, 0}, infinity, infinity};
         }
         const std::size_t side = dop_side(in.kdop), axes = axes_of(in.kdop).size();
@@ -214,7 +207,9 @@ template <std::size_t L> void evaluate_leaf(const LeafInput& in, const LeafJob& 
     bound_vertices<L>(in, p, place, job.dop);
     if (!job.slot)
         return;
-    place_corners<L>(p, reinterpret_cast<const std::uint8_t*>(value + run.corners()), job.slot);
+    for (std::size_t r = 0; r < 3; ++r)
+        p[r].store(job.slot + r * L);
+    std::memcpy(job.slot + 3 * L, value + run.corners(), 3 * L);
     place_of(job.slot, L) = place;
 }
 

@@ -31,16 +31,17 @@ struct LeafRun {
     std::size_t size() const { return weights() + nodes * lanes; }
 };
 
-/// A deformed leaf: the corners of its triangles relative to a reference point of its own, 3 corners × 3 coordinates × lanes floats; then
-/// the reference point relative to the body's origin, and two errors. With P the vertex of evaluate_vertex or the exact one, p the corner
-/// and R the reference: |P − (R + p)| ≤ error, and |(P − P′) − (p − p′)| ≤ difference for any two vertices, in every coordinate. +∞ if
-/// nothing is known of it.
+/// A deformed leaf: its vertices relative to a reference point of its own, 3 coordinates × lanes floats; the corners of its triangles, as in
+/// its run; then the reference point relative to the body's origin, and two errors. With P the vertex of evaluate_vertex or the exact one,
+/// p the vertex and R the reference: |P − (R + p)| ≤ error, and |(P − P′) − (p − p′)| ≤ difference for any two vertices, in every
+/// coordinate. +∞ if nothing is known of it.
 struct LeafPlace {
     float reference[3], error, difference;
 };
-constexpr std::size_t leaf_slot_floats(std::size_t lanes) { return 9 * lanes + (lanes > 8 ? lanes : 8); }
-inline LeafPlace& place_of(float* slot, std::size_t lanes) { return *reinterpret_cast<LeafPlace*>(slot + 9 * lanes); }
-inline const LeafPlace& place_of(const float* slot, std::size_t lanes) { return *reinterpret_cast<const LeafPlace*>(slot + 9 * lanes); }
+constexpr std::size_t leaf_slot_floats(std::size_t lanes) { return lanes * (lanes < 8 ? 6 : 5); } // of 3.75 lanes + 5
+inline const std::uint8_t* corners_of(const float* slot, std::size_t lanes) { return reinterpret_cast<const std::uint8_t*>(slot + 3 * lanes); }
+inline LeafPlace& place_of(float* slot, std::size_t lanes) { return *reinterpret_cast<LeafPlace*>(slot + 3 * lanes + 3 * lanes / 4); }
+inline const LeafPlace& place_of(const float* slot, std::size_t lanes) { return *reinterpret_cast<const LeafPlace*>(slot + 3 * lanes + 3 * lanes / 4); }
 
 struct LeafInput {
     std::size_t lanes = 16; ///< 4, 8 or 16

@@ -157,6 +157,19 @@ template <std::size_t L> HWY_INLINE Wide<L> lookup(const Wide<L>& table, const s
         const hn::RebindToSigned<D> di;
         const hn::Rebind<std::uint8_t, D> d8;
         return {{hn::TableLookupLanes(table.v[0], hn::IndicesFromVec(D(), hn::PromoteTo(di, hn::LoadU(d8, index))))}};
+    } else if constexpr (Wide<L>::width == 8) { // L = 8 or 16
+        using D = typename Wide<L>::D;
+        const hn::RebindToSigned<D> di;
+        const hn::Rebind<std::uint8_t, D> d8;
+        Wide<L> out;
+        for (std::size_t i = 0; i < Wide<L>::vectors; ++i) {
+            const auto place = hn::PromoteTo(di, hn::LoadU(d8, index + 8 * i));
+            const auto low = hn::IndicesFromVec(D(), hn::And(place, hn::Set(di, 7)));
+            out.v[i] = hn::TableLookupLanes(table.v[0], low);
+            if constexpr (L == 16)
+                out.v[i] = hn::IfThenElse(hn::RebindMask(D(), hn::Gt(place, hn::Set(di, 7))), hn::TableLookupLanes(table.v[1], low), out.v[i]);
+        }
+        return out;
     }
 #endif
     HWY_ALIGN float in[L], out[L];
