@@ -13,7 +13,7 @@ using namespace cinch::test;
 namespace {
 
 constexpr Methods every_method[] = {Method::convex, Method::sphere, Method::corners, Method::eq12, Method::limited, Method::local, Method::support,
-                                    Method::linear, Method::best, Method::vertices, Method::local | Method::support};
+                                    Method::linear, Method::best, Method::vertices, Method::local | Method::support, Method::eq12 | Method::sphere};
 constexpr Update every_update[] = {Update::lazy, Update::full, Update::automatic};
 struct Leaf {
     ClusterSize size;
