@@ -18,6 +18,8 @@ namespace cinch {
 namespace {
 
 constexpr float last_stamp = 0x1p24f; // floats count by ones up to here
+constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr float most_known = 0x1p120f; // of a given position, relative to the origin: sums of a few do not overflow
 
 RefitOptions refit_options(const LazyOptions& o) { return {o.methods, o.kdop, Rounding::proven, o.precision, 1, o.rest_shape}; }
 
@@ -235,12 +237,17 @@ void LazyRefit::place_leaves()
             }
             for (std::size_t r = 0; r < 3; ++r)
                 std::fill_n(slot + r * lanes + leaf.vertices, lanes - leaf.vertices, slot[r * lanes]);
+            if (!(far < most_known && out < most_known)) { // as in evaluate_leaf
+                std::fill_n(slot, 3 * lanes, 0.0f);
+                place = {{0, 0, 0}, infinity, infinity};
+                std::fill_n(job.dop, axes.size(), infinity);
+                std::fill_n(job.dop + side, axes.size(), infinity);
+                continue;
+            }
             place.error = succ(2 * unit_roundoff_of<float> * far + 0x1p-50f * (far + out));
             place.difference = 2 * place.error;
-            if (!(far < std::numeric_limits<float>::infinity() && out < std::numeric_limits<float>::infinity()))
-                place.error = place.difference = std::numeric_limits<float>::infinity();
             for (std::size_t a = 0; a < axes.size(); ++a) {
-                float most = -std::numeric_limits<float>::infinity(), least = -most, middle = 0;
+                float most = -infinity, least = infinity, middle = 0;
                 for (std::size_t v = 0; v < lanes; ++v) {
                     float along = 0;
                     for (std::size_t r = 0; r < 3; ++r)
