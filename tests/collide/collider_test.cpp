@@ -225,6 +225,10 @@ TEST_CASE("any and leaves: right, stopped where told, and no obstacle for what i
                     if (found)
                         REQUIRE(std::binary_search(truth[f].begin(), truth[f].end(), first[0]));
                     REQUIRE(collider.any() == found);
+                    std::size_t deformed = 0;
+                    for (const LazyRefit& tree : collider.trees())
+                        deformed += tree.counts().leaves;
+                    REQUIRE(collider.counts().updates.leaves == deformed); // of the frame, not of the queries
 
                     Pairs leaves;
                     collider.find(Query::leaves, [&](std::span<const TrianglePair> some) {
