@@ -118,7 +118,8 @@ TEST_CASE("small rings and fish: pairs of brute force on frames of all of the mo
         INFO(scene);
         const bool alternatives = std::string(scene) == "santa-ring-5";
         const bool slow = std::string(scene) == "santa-ring-2" || std::string(scene) == "santa-ring-6"; // to simulate
-        pairs += check_all(simulated(scene, 0, quick ? 2 : slow && !thorough ? 30 : 91, thorough ? 3 : 9), thorough ? options : alternatives ? std::vector{options[0], options[3]} : std::vector{options[0]});
+        pairs += check_all(simulated(scene, 0, quick ? 2 : slow && !thorough ? 30 : 91, thorough ? 3 : 9),
+                           thorough ? options : alternatives ? std::vector{options[0], options[3]} : std::vector{options[0]});
         if (quick)
             return;
     }

@@ -130,7 +130,8 @@ void check_slots(const DeformableSurface& surface, const LazyRefit& tree, std::s
 }
 
 // Frames that a query goes through by halves: each goes down a random way from what is current, with slots for all leaves that are.
-Seen go_through(Dice& dice, const DeformableSurface& surface, const std::vector<BodyFrame>& frames, const LazyOptions& options, ClusterSize size, std::size_t* merged = nullptr)
+Seen go_through(Dice& dice, const DeformableSurface& surface, const std::vector<BodyFrame>& frames, const LazyOptions& options, ClusterSize size,
+                std::size_t* merged = nullptr)
 {
     const Bvh bvh = build_bvh(surface, size, RestDetail::inner);
     LazyRefit tree(bvh, surface, options);
