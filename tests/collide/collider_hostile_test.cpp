@@ -146,7 +146,8 @@ TEST_CASE("places far from the origin, each body's own or the same, at rest and 
         const Vec3 place = far * dice.point();
         for (const Vec3& target : {Vec3::Zero().eval(), place, Vec3(place[0], 0, 0)})
             for (int f = 0; f < 2; ++f)
-                bodies.add_frame({around(dice, 11, r, target + 0.2 * dice.point(), far < 1e7 ? 0.03 : 0), around(dice, 11, r, target - r * away + 0.2 * dice.point(), 0)});
+                bodies.add_frame({around(dice, 11, r, target + 0.2 * dice.point(), far < 1e7 ? 0.03 : 0),
+                                  around(dice, 11, r, target - r * away + 0.2 * dice.point(), 0)});
         // One body's origin moves on its own.
         bodies.add_frame({around(dice, 11, r, place, 0), Maps(11, moved_by(-away))});
         INFO("far " << far);
@@ -239,7 +240,8 @@ TEST_CASE("faces that touch exactly: coplanar, by an edge, by a corner, and bodi
     const Vec3 above(0, 0, 100);
     for (const Vec3& t : {Vec3(2, 0, 0), Vec3(2, 1, 0), Vec3(2, 2, 0), Vec3(2, 2, 2), Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(2 + 0x1p-51, 0, 0), Vec3(2 - 0x1p-52, 0, 0)})
         for (const Vec3& whole : {Vec3(0, 0, 0), Vec3(1 << 20, -(1 << 21), 3)}) // exact far away too, but for the last two
-            bodies.add_frame({Maps(1, moved_by(whole)), Maps(1, moved_by(whole + t)), Maps(1, moved_by(whole + Vec3(-3, -3, 1))), Maps(1, moved_by(whole + (t[0] > 1 ? above : t)))});
+            bodies.add_frame({Maps(1, moved_by(whole)), Maps(1, moved_by(whole + t)), Maps(1, moved_by(whole + Vec3(-3, -3, 1))),
+                              Maps(1, moved_by(whole + (t[0] > 1 ? above : t)))});
     CHECK(pairs_of(bodies) > 5000);
     check_all(bodies);
     check_all(bodies, {}, {1, 3});
@@ -257,8 +259,9 @@ TEST_CASE("faces that touch exactly: coplanar, by an edge, by a corner, and bodi
 TEST_CASE("nothing, one triangle, points and segments, all centroids alike, soups")
 {
     Dice dice(26);
-    TriangleMesh unused{{{0, 0, 0}, {1, 1, 1}}, {}}, one{{{-1, -1, 0}, {1, -1, 0.1}, {0, 1, 0}}, {{0, 1, 2}}}, point{{{0, 0, 0.03}}, {{0, 0, 0}}}, alike, points = soup(dice, 300, 0.3),
-        shells;
+    const TriangleMesh unused{{{0, 0, 0}, {1, 1, 1}}, {}}, one{{{-1, -1, 0}, {1, -1, 0.1}, {0, 1, 0}}, {{0, 1, 2}}}, point{{{0, 0, 0.03}}, {{0, 0, 0}}};
+    const TriangleMesh points = soup(dice, 300, 0.3);
+    TriangleMesh alike, shells;
     for (std::uint32_t i = 0; i < 200; ++i) { // the same centroid for all, of one shape or another
         alike.vertices.insert(alike.vertices.end(), {{1, 0, 0}, {0, 1, 0}, {-1, -1, 0}});
         alike.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});

@@ -140,10 +140,10 @@ TEST_CASE("what floats decide is true of every surface within their errors, on e
             }
         }
         const Vec3 reference_a = on(8 * dice.point(), 0x1p-4), reference_b = on(Vec3(-between + 2 * dice.point()), 0x1p-4);
-        const Leaf a(dice, lanes, of_a, error_a, bend_a, reference_a, -reference_a), b(dice, lanes, of_b, error_b, bend_b, reference_b, between - reference_a);
         // Leaf a stands about the world's origin: its body's origin is at −reference.
-        Leaf moved_a = a, moved_b = b;
-        const ClusterPair pair{moved_a.slot.data(), moved_b.slot.data(), moved_a.dop, moved_b.dop, static_cast<std::uint32_t>(triangles), static_cast<std::uint32_t>(triangles)};
+        const Leaf a(dice, lanes, of_a, error_a, bend_a, reference_a, -reference_a), b(dice, lanes, of_b, error_b, bend_b, reference_b, between - reference_a);
+        const auto count = static_cast<std::uint32_t>(triangles);
+        const ClusterPair pair{a.slot.data(), b.slot.data(), a.dop, b.dop, count, count};
         std::vector<TriangleHit> found;
         std::uint64_t tests = 0;
         for (std::size_t i = 0; i < (round < 3000 ? targets.size() : 1); ++i) {
