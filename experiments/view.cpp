@@ -8,6 +8,7 @@
 #include <tbb/info.h>
 
 #include "experiments/report/interrupt.hpp"
+#include "experiments/report/number.hpp"
 #include "toolkit/surface/input_error.hpp"
 
 namespace cinch {
@@ -21,17 +22,23 @@ int view(const ViewOptions& options)
         throw InputError::in_file(options.report, "cannot be written");
     file.close();
     catch_interrupt();
-    const nlohmann::ordered_json made = make_view(options.request);
-    const std::string page = view_page(std::span(&made, 1));
+    std::vector<nlohmann::ordered_json> views;
+    for (const ViewRequest& request : options.request.scene.empty() ? report_views() : std::vector{options.request})
+        if (views.empty() || !interrupted())
+            views.push_back(make_view(request));
+    const std::string page = view_page(views);
     file.open(options.report, std::ios::binary | std::ios::trunc);
     file << page;
     if (!file.flush())
         throw InputError::in_file(options.report, "writing failed; is the disk full?");
-    fmt::print("{}: {} frames, {:.1f} MB\n", options.report, made["time_s"].size(), static_cast<double>(page.size()) / 1e6);
+    for (const auto& made : views)
+        fmt::print("{}: {}, {}\n", made["scene"].get<std::string>(), counted(made["time_s"].size(), "frame", "frames"),
+                   counted(made["bounds"].size(), "method", "methods"));
+    fmt::print("{}: {:.1f} MB\n", options.report, static_cast<double>(page.size()) / 1e6);
     if (!has_three())
         fmt::print(stderr, "cinch: built without three.js, the page says how to get it\n");
     if (interrupted()) {
-        fmt::print(stderr, "cinch: interrupted; the page has the methods done until then\n");
+        fmt::print(stderr, "cinch: interrupted; the page has what was done until then\n");
         return 130;
     }
     return 0;

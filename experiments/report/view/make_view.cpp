@@ -80,7 +80,32 @@ Grid grid_of(const std::vector<std::vector<Vec3>>& frames, int bits)
     return Grid::make(low, high, bits);
 }
 
-Json pack_positions(const std::vector<std::vector<Vec3>>& frames, const Grid& grid)
+// The corners of all triangles of all bodies.
+std::vector<std::uint32_t> corners_of(const std::vector<DrawnBody>& bodies)
+{
+    std::vector<std::uint32_t> out;
+    std::uint32_t first = 0;
+    for (const DrawnBody& body : bodies) {
+        for (const std::uint32_t v : body.corner)
+            out.push_back(first + v);
+        first += static_cast<std::uint32_t>(body.vertex.size());
+    }
+    return out;
+}
+
+// As how far each lies below the next vertex not used yet: mostly 0 and little more.
+Json pack_corners(const std::vector<std::uint32_t>& corners)
+{
+    std::vector<std::int32_t> out;
+    std::uint32_t next = 0;
+    for (const std::uint32_t v : corners) {
+        out.push_back(static_cast<std::int32_t>(next - v));
+        next = std::max(next, v + 1);
+    }
+    return pack(out, out.size(), 1, 1);
+}
+
+Json pack_positions(const std::vector<std::vector<Vec3>>& frames, const Grid& grid, const std::vector<std::uint32_t>& corners)
 {
     std::vector<std::int32_t> out;
     out.reserve(frames.size() * frames[0].size() * 3);
@@ -88,22 +113,7 @@ Json pack_positions(const std::vector<std::vector<Vec3>>& frames, const Grid& gr
         for (const Vec3& v : frame)
             for (const std::int32_t x : grid.point(v))
                 out.push_back(x);
-    return pack(out, frames.size(), frames[0].size(), 3);
-}
-
-// Corners as how far they lie below the next vertex not used yet: mostly 0 and little more.
-Json pack_triangles(const std::vector<DrawnBody>& bodies)
-{
-    std::vector<std::int32_t> out;
-    std::uint32_t first = 0, next = 0;
-    for (const DrawnBody& body : bodies) {
-        for (const std::uint32_t v : body.corner) {
-            out.push_back(static_cast<std::int32_t>(next - (first + v)));
-            next = std::max(next, first + v + 1);
-        }
-        first += static_cast<std::uint32_t>(body.vertex.size());
-    }
-    return pack(out, out.size(), 1, 1);
+    return pack(out, frames.size(), frames[0].size(), 3, parallelograms(corners, frames[0].size()));
 }
 
 // Where the maps take the rest positions of the simulation nodes, of the bodies that have some. What is not finite or far away is
@@ -264,8 +274,9 @@ nlohmann::ordered_json make_view(const ViewRequest& request)
         const Grid grid = grid_of(positions, request.bits);
         view["step"] = grid.step;
         view["origin"] = grid.origin;
-        view["triangles"] = pack_triangles(bodies);
-        view["positions"] = pack_positions(positions, grid);
+        const std::vector<std::uint32_t> corners = corners_of(bodies);
+        view["corners"] = pack_corners(corners);
+        view["positions"] = pack_positions(positions, grid, corners);
         view["nodes"] = pack_nodes(bodies, frames, grid);
         view["bounds"] = Json::object();
         Progress progress(fmt::format("{}: bounds for the view", request.scene), request.methods.size());
@@ -288,28 +299,34 @@ std::vector<ViewRequest> report_views()
     ViewRequest brain;
     brain.scene = "brain-pull";
     brain.title = "Fig. 1: a brain, pulled";
-    brain.text = "30,000 vertices follow 509 simulation nodes. Outer boxes: bounds in time linear in the nodes; inner boxes: the vertices' own. Level 0 is the paper's figure.";
+    brain.text = "30,000 vertices follow 509 simulation nodes. The outer box is the bound, in time linear in the nodes; the inner one is the vertices' own. "
+                 "Deeper levels have smaller boxes, and more axes make k-DOPs of them.";
+    brain.levels = 7;
     brain.kdop = 26;
+    brain.bits = 14;
     brain.level = 0;
+    brain.time = 0.6; // the pull is at its end
     brain.surface = "glass";
     brain.show_nodes = true;
+    brain.azimuth = 60;
     ViewRequest ring;
     ring.scene = "santa-ring-6";
     ring.title = "Fig. 6: six bodies on a ring";
-    ring.text = "Held at the top by a ring that swings; triangles that intersect are red.";
-    ring.levels = 6;
+    ring.text = "A ring that swings holds them at their tops. Triangles that intersect are red.";
+    ring.levels = 5;
     ring.kdop = 14;
-    ring.level = 2;
-    ring.time = 0.6;
+    ring.bits = 14;
+    ring.level = 1;
+    ring.time = 0.55;
     ViewRequest fishes;
     fishes.scene = "fishes";
     fishes.title = "Fig. 7: 24 fish";
-    fishes.text = "192,000 vertices that follow 2,304 simulation nodes; triangles that intersect are red.";
-    fishes.frames = 30;
+    fishes.text = "They have 192,000 vertices that follow 2,304 simulation nodes. Triangles that intersect are red.";
+    fishes.frames = 24;
     fishes.levels = 5;
     fishes.bits = 14;
     fishes.methods = {Method::best, Method::limited, Method::eq12, Method::sphere, Method::convex};
-    fishes.level = 1;
+    fishes.level = 0;
     fishes.elevation = 45;
     return {brain, ring, fishes};
 }

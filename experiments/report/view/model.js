@@ -7,18 +7,18 @@ class Model {
     static async from(data) {
         const model = new Model();
         Object.assign(model, {data, frames: data.time_s.length, levels: data.bvs.level.length - 1, methods: Object.keys(data.bounds), kdop: data.kdop});
-        model.positions = await unpack(data.positions, Uint16Array);
-        model.vertices = model.positions.length / 3 / model.frames;
-        model.nodes = await unpack(data.nodes);
-        model.bounds = {};
-        for (const method of model.methods)
-            model.bounds[method] = await unpack(data.bounds[method]);
-        const below = await unpack(data.triangles);
+        const below = await unpack(data.corners);
         model.corners = new Uint32Array(below.length);
         for (let i = 0, next = 0; i < below.length; ++i) {
             model.corners[i] = next - below[i];
             next = Math.max(next, model.corners[i] + 1);
         }
+        model.vertices = data.positions.shape[1];
+        model.positions = await unpack(data.positions, Uint16Array, parallelograms(model.corners, model.vertices));
+        model.nodes = await unpack(data.nodes);
+        model.bounds = {};
+        for (const method of model.methods)
+            model.bounds[method] = await unpack(data.bounds[method]);
         if (data.contacts) {
             model.touching = await unpack(data.contacts.triangles);
             model.firstTouching = [0];
@@ -39,17 +39,6 @@ class Model {
     }
 
     touchingOf(frame) { return this.touching ? this.touching.subarray(this.firstTouching[frame], this.firstTouching[frame + 1]) : []; }
-
-    // Least and greatest coordinates over all frames.
-    extent() {
-        const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
-        for (let i = 0; i < this.positions.length; ++i) {
-            const r = i % 3, x = this.positions[i];
-            if (x < low[r]) low[r] = x;
-            if (x > high[r]) high[r] = x;
-        }
-        return {low, high};
-    }
 
     // Supports of a bound along the axes of k.
     bound(method, frame, bv, k) {
@@ -73,6 +62,23 @@ class Model {
             }
             return [most, -least];
         });
+    }
+
+    // Least and greatest coordinates of the bounds of a level; of the vertices instead where a bound is far from them.
+    extent({method, frame, level}) {
+        const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity], {level: first} = this.data.bvs;
+        for (let bv = first[level]; bv < first[level + 1]; ++bv) {
+            const truth = this.truth(frame, bv, 6), bound = this.bound(method, frame, bv, 6);
+            const near = truth.every((t, d) => bound[d] - t <= truth[d & 6] + truth[d | 1]);
+            (near ? bound : truth).forEach((s, d) => {
+                const r = d >> 1;
+                if (d & 1)
+                    low[r] = Math.min(low[r], -s);
+                else
+                    high[r] = Math.max(high[r], s);
+            });
+        }
+        return {low, high};
     }
 
     // The BVs of a level in a frame: faces of bound and truth, and how much greater the bound is. null: not known.

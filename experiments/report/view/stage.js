@@ -5,7 +5,7 @@ const palette = [0xe3cdb9, 0xb9cfe3, 0xcfe0b8, 0xe6c3cb, 0xd3c6e4, 0xe7dca9];
 
 // Looseness as colour: from 1 to `loosest`, on a logarithmic scale; beyond, the last.
 const loosest = 8;
-const ramp = ['#0d0887', '#5c01a6', '#9c179e', '#cc4778', '#ed7953', '#fdb32f'];
+const ramp = ['#1662a8', '#189a98', '#74ad3a', '#e5a50a', '#dd5f1c', '#9a1038'];
 const unknownColour = '#8a8f98';
 
 function colourOf(ratio) {
@@ -63,7 +63,9 @@ class Stage {
         this.camera.add(sun);
         this.scene.add(this.camera, new THREE.HemisphereLight(0xffffff, 0x9a958e, 0.62));
 
-        const {low, high} = model.extent(), size = Math.hypot(...minus(high, low)) || 1;
+        // What is shown first, in the middle and about 1 in size.
+        this.first = model.extent(model.data.first);
+        const {low, high} = this.first, size = Math.hypot(...minus(high, low)) || 1;
         this.grid = new THREE.Group();
         this.grid.scale.setScalar(1 / size);
         this.grid.position.set(...low.map((x, r) => -(x + high[r]) / 2 / size));
@@ -78,10 +80,17 @@ class Stage {
         this.lookFrom(model.data.first);
     }
 
+    // From so far that the box of the first picture fits.
     lookFrom({azimuth, elevation}) {
-        const a = azimuth * Math.PI / 180, e = elevation * Math.PI / 180;
+        const a = azimuth * Math.PI / 180, e = elevation * Math.PI / 180, tangent = Math.tan(15 * Math.PI / 180), {low, high} = this.first;
+        const towards = [Math.cos(a) * Math.cos(e), Math.sin(a) * Math.cos(e), Math.sin(e)], right = [-Math.sin(a), Math.cos(a), 0], up = cross(towards, right);
+        let distance = 0;
+        for (let i = 0; i < 8; ++i) {
+            const corner = [0, 1, 2].map(r => 0.52 * (i >> r & 1 ? 1 : -1) * (high[r] - low[r]) * this.grid.scale.x);
+            distance = Math.max(distance, dot(corner, towards) + Math.max(Math.abs(dot(corner, right)) / 1.6, Math.abs(dot(corner, up))) / tangent);
+        }
         this.controls.target.set(0, 0, 0);
-        this.camera.position.set(Math.cos(a) * Math.cos(e), Math.sin(a) * Math.cos(e), Math.sin(e)).multiplyScalar(2.25);
+        this.camera.position.set(...towards).multiplyScalar(distance || 2);
         this.controls.update();
     }
 
@@ -104,7 +113,9 @@ class Stage {
         touching.setAttribute('normal', geometry.getAttribute('normal'));
         this.touching = new THREE.Mesh(touching, new THREE.MeshPhongMaterial(
             {color: 0xe3001b, emissive: 0x500008, specular: 0x111111, side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -2}));
-        for (const mesh of [this.surface, this.touching]) {
+        this.behind = new THREE.Mesh(touching, new THREE.MeshBasicMaterial({color: 0xe3001b, transparent: true, opacity: 0.3, depthTest: false, side: THREE.DoubleSide}));
+        this.behind.renderOrder = 1; // what other triangles hide shines through
+        for (const mesh of [this.surface, this.touching, this.behind]) {
             mesh.frustumCulled = false;
             this.grid.add(mesh);
         }
@@ -195,7 +206,7 @@ class Stage {
         this.nodes.visible = nodes;
         this.faces.visible = this.boundEdges.visible = bounds;
         this.trueEdges.visible = truth;
-        this.touching.visible = contacts;
+        this.touching.visible = this.behind.visible = contacts;
     }
 
     resize(width, height) {
