@@ -7,6 +7,7 @@
 #include "experiments/scaling.hpp"
 #include "experiments/simulation/cost_simulation.hpp"
 #include "experiments/simulation/simulate.hpp"
+#include "experiments/view.hpp"
 #ifdef CINCH_EXACT
 #include "experiments/corners.hpp"
 #include "experiments/cost/cost.hpp"
@@ -22,6 +23,7 @@ namespace cinch {
 void add_scaling(CLI::App& app, ScalingOptions& o);
 void add_simulate(CLI::App& app, SimulateOptions& o);
 void add_collide(CLI::App& app, CollideOptions& o);
+void add_view(CLI::App& app, ViewOptions& o);
 #ifdef CINCH_EXACT
 void add_verify(CLI::App& app, VerifyOptions& o);
 void add_tightness(CLI::App& app, TightnessOptions& o);

@@ -46,6 +46,8 @@ int main(int argc, char** argv)
     add_simulate(app, simulate_options);
     CollideOptions collide_options;
     add_collide(app, collide_options);
+    ViewOptions view_options;
+    add_view(app, view_options);
     const auto run = [&](const CLI::App& parsed) -> int {
 #ifdef CINCH_EXACT
         if (parsed.got_subcommand("verify"))
@@ -77,6 +79,8 @@ int main(int argc, char** argv)
             return simulate(simulate_options);
         if (parsed.got_subcommand("collide"))
             return collide(collide_options);
+        if (parsed.got_subcommand("view"))
+            return view(view_options);
         return parsed.get_subcommands().empty() ? bad_input : 0;
     };
     if (const char* target = std::getenv("CINCH_TARGET"); target && *target && !force_kernel_target(target)) {
