@@ -309,7 +309,8 @@ std::vector<ViewRequest> report_views()
     brain.time = 0.6; // the pull is at its end
     brain.surface = "glass";
     brain.show_nodes = true;
-    brain.azimuth = 60;
+    brain.azimuth = -55; // the pull goes to the right
+    brain.elevation = 14;
     ViewRequest ring;
     ring.scene = "santa-ring-6";
     ring.title = "Fig. 6: six bodies on a ring";
