@@ -184,6 +184,10 @@ void add_view(CLI::App& app, ViewOptions& o)
     option("--bits", o.request.bits, "of the grid that positions are rounded to [16]; fewer make a smaller page")->check(CLI::Range(8, 16))->option_text("N")->needs(scene);
     option("--nodes", o.request.nodes, "simulation nodes per body, where they are sampled [as usual]")->check(CLI::Range(1, 100000))->option_text("N")->needs(scene);
     option("--seed", o.request.seed, "seed of everything random [0]")->option_text("N")->needs(scene);
+    command.add_option_function<std::vector<double>>("--camera", [&o](const std::vector<double>& degrees) {
+        o.request.azimuth = degrees[0];
+        o.request.elevation = degrees[1];
+    }, wrapped("where it is at first: degrees from +x towards +y, and up [35,20]"))->delimiter(',')->expected(2)->option_text("A,E")->needs(scene);
     option("--threads", o.threads, "threads [all cores]; the page is the same")->check(CLI::Range(1, 1024))->option_text("N");
     command.footer("Examples:\n"
                    "  cinch view --report figures.html      Figs. 1, 6 and 7, about a minute\n"

@@ -69,11 +69,23 @@ class Browser:
             time.sleep(0.1)
         raise AssertionError(f"after {seconds} s still not: {script} {arguments}")
 
+    def settle(self):
+        """Until what was asked for is drawn."""
+        self.call("POST", "/execute/async", {"script": "const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done)))", "args": []})
+
     def find(self, selector):
         return next(iter(self.call("POST", "/element", {"using": "css selector", "value": selector}).values()))
 
     def click(self, selector):
         self.call("POST", f"/element/{self.find(selector)}/click")
+
+    def click_within(self, selector, share):
+        """A click at that share of the element's width, within the handle's reach at its ends."""
+        box = self.run("const r = document.querySelector(arguments[0]).getBoundingClientRect(); return [r.width, r.height]", selector)
+        here = {"element-6066-11e4-a52e-4f735466cecf": self.find(selector)}
+        x = round((share - 0.5) * (box[0] - 6))
+        self.call("POST", "/actions", {"actions": [{"type": "pointer", "id": "mouse", "actions": [
+            {"type": "pointerMove", "duration": 0, "origin": here, "x": x, "y": 0}, {"type": "pointerDown", "button": 0}, {"type": "pointerUp", "button": 0}]}]})
 
     def keys(self, text):
         """Types into whatever has the focus."""
@@ -81,13 +93,13 @@ class Browser:
         self.call("POST", "/actions", {"actions": [{"type": "key", "id": "keyboard", "actions": actions}]})
 
     def drag(self, selector, dx, dy, button=0):
-        here = {f"element-6066-11e4-a52e-4f735466cecf": self.find(selector)}
+        here = {"element-6066-11e4-a52e-4f735466cecf": self.find(selector)}
         self.call("POST", "/actions", {"actions": [{"type": "pointer", "id": "mouse", "actions": [
             {"type": "pointerMove", "duration": 0, "origin": here, "x": 0, "y": 0}, {"type": "pointerDown", "button": button},
             {"type": "pointerMove", "duration": 50, "origin": here, "x": dx, "y": dy}, {"type": "pointerUp", "button": button}]}]})
 
     def scroll(self, selector, dy):
-        here = {f"element-6066-11e4-a52e-4f735466cecf": self.find(selector)}
+        here = {"element-6066-11e4-a52e-4f735466cecf": self.find(selector)}
         self.call("POST", "/actions", {"actions": [{"type": "wheel", "id": "wheel", "actions": [
             {"type": "scroll", "origin": here, "x": 0, "y": 0, "deltaX": 0, "deltaY": dy, "duration": 50}]}]})
 

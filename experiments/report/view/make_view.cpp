@@ -11,6 +11,7 @@
 #include "experiments/report/view.hpp"
 #include "experiments/report/view/grid.hpp"
 #include "experiments/report/view/pack.hpp"
+#include "experiments/simulation/find_scene.hpp"
 #include "toolkit/collide/collider.hpp"
 #include "toolkit/deform/parallel.hpp"
 #include "toolkit/deform/surface_evaluator.hpp"
@@ -247,8 +248,8 @@ nlohmann::ordered_json make_view(const ViewRequest& request)
     require_valid(request);
     InputOptions what;
     what.input = request.scene;
-    what.frames = std::max<std::size_t>(1, request.frames - 1);
-    what.first_frame = request.frames > 1;
+    what.first_frame = request.frames > 1 && is_scene(request.scene);
+    what.frames = request.frames - (what.first_frame ? 1 : 0);
     what.nodes = request.nodes;
     what.seed = request.seed;
     const Inputs inputs = load_inputs(what);
@@ -308,7 +309,8 @@ std::vector<ViewRequest> report_views()
     brain.time = 0.6; // the pull is at its end
     brain.surface = "glass";
     brain.show_nodes = true;
-    brain.azimuth = 60;
+    brain.azimuth = -55; // the pull goes to the right
+    brain.elevation = 14;
     ViewRequest ring;
     ring.scene = "santa-ring-6";
     ring.title = "Fig. 6: six bodies on a ring";

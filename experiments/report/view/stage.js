@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What is on the canvas, by three.js. Everything stands in a group that takes the grid to about unit size, z up.
 
+const fieldOfView = 18; // degrees
 const palette = [0xe3cdb9, 0xb9cfe3, 0xcfe0b8, 0xe6c3cb, 0xd3c6e4, 0xe7dca9];
 
 // Looseness as colour: from 1 to `loosest`, on a logarithmic scale; beyond, the last.
@@ -56,7 +57,7 @@ class Stage {
         this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
         this.renderer.setClearColor(0xf6f7f9);
         this.scene = new THREE.Scene();
-        this.camera = new THREE.PerspectiveCamera(30, 1, 0.01, 100);
+        this.camera = new THREE.PerspectiveCamera(fieldOfView, 1, 0.01, 100);
         this.camera.up.set(0, 0, 1);
         const sun = new THREE.DirectionalLight(0xffffff, 0.6);
         sun.position.set(-0.6, 0.9, 1);
@@ -82,7 +83,7 @@ class Stage {
 
     // From so far that the box of the first picture fits.
     lookFrom({azimuth, elevation}) {
-        const a = azimuth * Math.PI / 180, e = elevation * Math.PI / 180, tangent = Math.tan(15 * Math.PI / 180), {low, high} = this.first;
+        const a = azimuth * Math.PI / 180, e = elevation * Math.PI / 180, tangent = Math.tan(fieldOfView / 2 * Math.PI / 180), {low, high} = this.first;
         const towards = [Math.cos(a) * Math.cos(e), Math.sin(a) * Math.cos(e), Math.sin(e)], right = [-Math.sin(a), Math.cos(a), 0], up = cross(towards, right);
         let distance = 0;
         for (let i = 0; i < 8; ++i) {
@@ -123,7 +124,7 @@ class Stage {
 
     addNodes() {
         const material = new THREE.ShaderMaterial({
-            uniforms: {size: {value: 7 * this.renderer.getPixelRatio()}},
+            uniforms: {size: {value: 6 * this.renderer.getPixelRatio()}},
             vertexShader: 'uniform float size; void main() { gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); gl_PointSize = size; }',
             fragmentShader: `void main() {
                 float r = 2.0 * length(gl_PointCoord - vec2(0.5));
@@ -212,7 +213,7 @@ class Stage {
     resize(width, height) {
         this.renderer.setSize(width, height, false);
         this.camera.aspect = width / height;
-        this.camera.fov = width < height ? 2 * Math.atan(Math.tan(15 * Math.PI / 180) * height / width) * 180 / Math.PI : 30;
+        this.camera.fov = width < height ? 2 * Math.atan(Math.tan(fieldOfView / 2 * Math.PI / 180) * height / width) * 180 / Math.PI : fieldOfView;
         this.camera.updateProjectionMatrix();
         for (const object of [this.boundEdges, this.trueEdges])
             object.material.resolution.set(width, height);
