@@ -256,6 +256,36 @@ TEST_CASE("faces that touch exactly: coplanar, by an edge, by a corner, and bodi
     check_all(same);
 }
 
+TEST_CASE("small bodies that touch a large one from outside: their origins are as far apart as they are large")
+{
+    Dice dice(28);
+    Bodies bodies;
+    bodies.surface.push_back(rigid(box({4096, 4096, 4096}, {9, 9, 9})));
+    for (int b = 0; b < 12; ++b)
+        bodies.surface.push_back(b % 2 ? rigid(box({2, 2, 2}, {2, 2, 2})) : soft(brain(60), 6));
+    for (int f = 0; f < 6; ++f) {
+        const Vec3 whole = f < 3 ? Vec3(0, 0, 0) : Vec3(1 << 24, -(1 << 22), 1 << 20);
+        std::vector<Maps> maps{Maps(1, moved_by(whole))};
+        for (std::size_t b = 1; b < bodies.surface.size(); ++b) {
+            Vec3 at = 2000 * dice.point(); // beside a face, touching it
+            at[static_cast<int>(b % 3)] = (b % 6 < 3 ? 1 : -1) * 2049;
+            for (double& x : at)
+                x = std::round(x);
+            maps.push_back(bodies.surface[b].weights.node_count == 1 ? Maps(1, moved_by(whole + at)) : around(dice, 6, dice.rotation(), whole + at, 0.01));
+        }
+        bodies.add_frame(maps);
+    }
+    CHECK(pairs_of(bodies) > 100);
+    check_all(bodies);
+    check_all(bodies, {}, {1, 3});
+    const std::vector<Bvh> trees = bodies.trees({16, 16});
+    Collider collider{LazyOptions{}};
+    for (std::size_t b = 0; b < trees.size(); ++b)
+        collider.add(trees[b], bodies.surface[b]);
+    collider.update(bodies.frame[0]);
+    CHECK((collider.trees()[0].origin() - collider.trees()[1].origin()).norm() > 1000);
+}
+
 TEST_CASE("nothing, one triangle, points and segments, all centroids alike, soups")
 {
     Dice dice(26);
@@ -270,7 +300,7 @@ TEST_CASE("nothing, one triangle, points and segments, all centroids alike, soup
         shells.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
     }
     Bodies bodies;
-    for (const TriangleMesh* mesh : {&unused, &one, &point, &alike, &points, &shells})
+    for (const TriangleMesh* mesh : std::initializer_list<const TriangleMesh*>{&unused, &one, &point, &alike, &points, &shells})
         bodies.surface.push_back(patchy(dice, *mesh, 4, 3));
     bodies.surface.push_back({TriangleMesh{}, {}});
     bodies.surface.push_back(rigid({{{5, 5, 5}, {0, 0, 0.01}, {0, 0.1, 0.01}, {0.1, 0, 0.01}}, {{1, 2, 3}, {1, 2, 3}, {3, 2, 1}, {1, 1, 2}}})); // twice the same
