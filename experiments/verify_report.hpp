@@ -52,6 +52,7 @@ struct VerifyTotals {
 };
 
 void print_table(const Inputs& input, const VerifyOptions& options, const VerifyTotals& totals, const Provenance& from);
-void print_json(const Inputs& input, const VerifyOptions& options, const VerifyTotals& totals, const Provenance& from);
+/// By level, then violations, the exact attribution of the root, and totals.
+std::vector<nlohmann::ordered_json> records_of(const Inputs& input, const VerifyOptions& options, const VerifyTotals& totals);
 
 } // namespace cinch
