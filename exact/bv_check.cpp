@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exact/bv_check.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -29,6 +30,10 @@ void BvCheck::check(std::size_t bv, std::span<const std::uint32_t> vertices, std
     for (std::size_t j = 0; j < rest_.node.size(); ++j)
         if (rest_.node[j] < place_.size()) // else rest_data is set
             place_[rest_.node[j]] = j;
+    if (std::all_of(supports.begin(), supports.end(), [](double bound) { return bound == infinity; })) {
+        block.decided_by_filter += supports.size(); // contains everything, what overflows included
+        return;
+    }
     const std::size_t first = bv * 2 * frame_.axes.size();
     const bool rest_holds = frame_.methods != Method::vertices && !(out.failed[first] & rest_data);
     BvReport& report = out.bvs[bv];

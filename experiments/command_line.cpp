@@ -220,7 +220,11 @@ void add_verify(CLI::App& app, VerifyOptions& o)
         ->transform(one_of<RestShape>({{"aabb", RestShape::aabb}, {"obb", RestShape::obb}}))->option_text("SHAPE");
     command.add_flag("--remember", o.remember, wrapped("begin the search for lambda where the last frame left it"));
     option("--kdop", o.kdop, "directions of the bounds: 6, 14, 18 or 26 [6]")->check(CLI::IsMember({6, 14, 18, 26}))->option_text("K");
-    option("--leaf", o.leaf, "most triangles per leaf [1]")->check(CLI::Range(1, 1000000))->option_text("N");
+    option("--update", o.update, "whose bounds: refit (all BVs by the methods), or those that stand after a collision query between a scene's bodies: lazy (a cut by the methods, "
+           "merged above it, on demand below), front (all on demand), full (all merged from the vertices) [refit]")
+        ->transform(one_of<VerifiedUpdate>({{"refit", VerifiedUpdate::refit}, {"lazy", VerifiedUpdate::lazy}, {"full", VerifiedUpdate::full}, {"front", VerifiedUpdate::front}}))
+        ->option_text("KIND");
+    option("--leaf", o.leaf, "most triangles per leaf [1; 16 with --update]")->check(CLI::Range(1, 1000000))->option_text("N");
     option("--threads", o.threads, "threads [all cores]")->check(CLI::Range(1, 1024))->option_text("N");
     add_output(command, o.output);
     option("--certificate", o.certificate, "write a proof of every bound, for experiments/check_certificate.py; compressed if it ends in .gz")
@@ -230,8 +234,8 @@ void add_verify(CLI::App& app, VerifyOptions& o)
     command.add_flag("--volume", o.volume, wrapped("exact volumes too: bound over true k-DOP, and planes without a facet, on a sample of each level"));
     option("--sabotage", o.sabotage,
            "for tests: damage the bounds, to see that it is found: no-rounding (drop the error terms), swap-interval (swap one l and h), "
-           "lower-h (lower one h by 2^-53)")
-        ->transform(one_of<Sabotage>({{"no-rounding", Sabotage::no_rounding}, {"swap-interval", Sabotage::swap_interval}, {"lower-h", Sabotage::lower_h}}))
+           "lower-h (lower one h by 2^-53), stale (with --update lazy: the bounds of the frame before)")
+        ->transform(one_of<Sabotage>({{"no-rounding", Sabotage::no_rounding}, {"swap-interval", Sabotage::swap_interval}, {"lower-h", Sabotage::lower_h}, {"stale", Sabotage::stale}}))
         ->option_text("KIND");
     command.footer("Examples:\n"
                    "  cinch verify                               the 30,000-vertex brain, 509 nodes\n"
@@ -239,6 +243,7 @@ void add_verify(CLI::App& app, VerifyOptions& o)
                    "  cinch verify robot.glb --clip Robot_Dance  a skinned character\n"
                    "  cinch verify rest.off --weights w.txt --transforms t.txt --json\n"
                    "  cinch verify fish --certificate fish.jsonl.gz\n"
+                   "  cinch verify santa-ring-3 --update lazy    the bounds that collision reads\n"
                    "\n"
                    "Text form of weights and transforms ('#' starts a comment):\n"
                    "  weights     'V J'; then per vertex 'n j1 w1 ... jn wn': nodes from 0, weights\n"

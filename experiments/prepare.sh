@@ -2,9 +2,9 @@
 # Sourced by experiments/run and tests/run: installs what is missing, configures once, builds what changed.
 # Everything goes to standard error, so that what the program prints can be piped.
 
-packages=(g++ cmake ninja-build ccache git gnuplot-nox catch2 libbenchmark-dev libboost-dev libbullet-dev libcgal-dev libcli11-dev libeigen3-dev libembree-dev
-  libfcl-dev libfmt-dev libgmp-dev
-  libhwy-dev libmpfr-dev librapidcheck-dev libtbb-dev libtinygltf-dev lrslib nlohmann-json3-dev python3 python3-jsonschema zlib1g-dev)
+packages=(g++ cmake ninja-build ccache git gnuplot-nox catch2 libbenchmark-dev libboost-dev libbullet-dev libcgal-dev
+  libcli11-dev libeigen3-dev libembree-dev libfcl-dev libfmt-dev libgmp-dev libhwy-dev libmpfr-dev librapidcheck-dev
+  libtbb-dev libtinygltf-dev lrslib nlohmann-json3-dev python3 python3-jsonschema zlib1g-dev)
 
 install_packages() {
   command -v dpkg-query >/dev/null || {

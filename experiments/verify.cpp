@@ -16,13 +16,13 @@
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/line_file.hpp"
 #include "experiments/report/progress.hpp"
+#include "experiments/verify_lazy.hpp"
 #include "experiments/verify_report.hpp"
 #include "toolkit/deform/dyadic.hpp"
 #include "toolkit/hierarchy/refit.hpp"
 #include "toolkit/surface/input_error.hpp"
 
 namespace cinch {
-namespace {
 
 void damage(Bvh& bvh, Sabotage sabotage)
 {
@@ -36,6 +36,8 @@ void damage(Bvh& bvh, Sabotage sabotage)
         return;
     }
 }
+
+namespace {
 
 // limited ≤ eq12 ≤ convex on the doubles of every frame.
 class Ladder {
@@ -65,39 +67,6 @@ private:
     std::vector<double> looser_, tighter_;
     std::vector<Refitter> rungs_;
 };
-
-void add(const Bvh& bvh, const exact::FrameVerdict& frame, int kdop, VerifyTotals& totals)
-{
-    const auto k = static_cast<std::size_t>(kdop);
-    for (std::size_t i = 0; i < totals.levels.size(); ++i) {
-        LevelTotals& level = totals.levels[i];
-        for (std::size_t bv = bvh.level[i]; bv < bvh.level[i + 1]; ++bv) {
-            const auto masks = std::span(frame.failed).subspan(bv * k, k);
-            const auto violated = static_cast<std::size_t>(std::count_if(masks.begin(), masks.end(), [](auto mask) { return mask != 0; }));
-            level.violated += violated;
-            level.proven += k - violated;
-            const exact::BvReport& report = frame.bvs[bv];
-            const double ratio = report.bound_radius / report.true_radius;
-            if (!(report.true_radius > 0 && std::isfinite(ratio)))
-                continue;
-            ++level.measured;
-            level.ratio_sum += ratio;
-            level.ratio_max = std::max(level.ratio_max, ratio);
-            level.loss.box += report.loss.box / report.true_radius;
-            level.loss.interval += report.loss.interval / report.true_radius;
-            level.loss.corner += report.loss.corner / report.true_radius;
-            level.loss.rounding += report.loss.rounding / report.true_radius;
-        }
-    }
-    for (const exact::Violation& violation : frame.examples) {
-        if (totals.examples.size() >= 10)
-            break;
-        const auto above = std::upper_bound(bvh.level.begin(), bvh.level.end(), static_cast<std::uint32_t>(violation.bv));
-        totals.examples.push_back({totals.frames, static_cast<std::size_t>(above - bvh.level.begin() - 1), violation});
-    }
-    totals.decided_by_filter += frame.decided_by_filter;
-    ++totals.frames;
-}
 
 // In the last frame verified: the exact attribution of the root's bounds, and VIPR files of the first BV of every level.
 void explain_last_frame(const Input& input, const Bvh& bvh, const VerifyOptions& options, std::size_t frame, std::span<const double> supports, VerifyTotals& totals)
@@ -139,16 +108,9 @@ void verify_body(const Input& input, const VerifyOptions& options, LineFile* cer
     totals.packed_bytes += refit.bytes();
     totals.rest_bytes += bvh.bytes();
 
-    const std::size_t levels = bvh.level.size() - 1;
-    if (totals.levels.size() < levels)
-        totals.levels.resize(levels);
-    for (std::size_t i = 0; i < levels; ++i) {
-        totals.levels[i].bvs += bvh.level[i + 1] - bvh.level[i];
-        for (std::size_t bv = bvh.level[i]; bv < bvh.level[i + 1]; ++bv)
-            totals.levels[i].nodes += bvh.bvs[bv].influence_count;
-    }
-    if (options.volume && totals.volumes.size() < levels)
-        totals.volumes.resize(levels);
+    add_levels(bvh, totals);
+    if (options.volume && totals.volumes.size() < totals.levels.size())
+        totals.volumes.resize(totals.levels.size());
     const exact::LineSink write = [&](std::string_view text) { certificate->line(text); };
     if (certificate)
         exact::certify_rest(input.surface, bvh, options.methods, options.kdop, input.clip.frames.size(), write, options.rest_shape);
@@ -163,7 +125,7 @@ void verify_body(const Input& input, const VerifyOptions& options, LineFile* cer
         const exact::FrameVerdict verdict = verifier.check(maps, options.methods, options.kdop, supports, options.rest_shape);
         if (certificate)
             exact::certify_frame(totals.frames, maps, options.methods, options.kdop, supports, verdict, write, options.rest_shape);
-        add(bvh, verdict, options.kdop, totals);
+        add(bvh, verdict, options.kdop, {}, totals);
         totals.infinite += static_cast<std::size_t>(std::count_if(supports.begin(), supports.end(), [](double s) { return std::isinf(s); }));
         if (options.volume)
             add_volumes(input.surface, bvh, maps, options.kdop, supports, totals.volumes);
@@ -176,8 +138,11 @@ void verify_body(const Input& input, const VerifyOptions& options, LineFile* cer
 
 } // namespace
 
-int verify(const VerifyOptions& options)
+int verify(const VerifyOptions& given)
 {
+    VerifyOptions options = given;
+    if (options.leaf == 0)
+        options.leaf = options.update == VerifiedUpdate::refit ? 1 : 16;
     const auto start = std::chrono::steady_clock::now();
     const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
@@ -195,21 +160,24 @@ int verify(const VerifyOptions& options)
     if (!options.certificate.empty())
         certificate.emplace(options.certificate);
     catch_interrupt();
+    std::optional<LazyTotals> lazy;
+    if (options.update != VerifiedUpdate::refit)
+        lazy = verify_lazy(inputs, options, totals);
+    else if (options.sabotage == Sabotage::stale)
+        throw InputError("--sabotage stale goes with --update lazy, full and front");
     for (const Input& input : inputs.bodies)
-        if (!interrupted())
+        if (!lazy && !interrupted())
             verify_body(input, options, certificate ? &*certificate : nullptr, totals);
     if (certificate)
         certificate->close();
-    for (const LevelTotals& level : totals.levels) {
-        totals.proven += level.proven;
-        totals.violated += level.violated;
-    }
-    totals.bounds = totals.proven + totals.violated;
+    finish(totals);
     totals.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
-    output.add_all(records_of(inputs, options, totals));
+    output.add_all(lazy ? lazy_records_of(inputs, options, totals, *lazy) : records_of(inputs, options, totals));
     output.finish();
-    if (!options.output.records_only())
+    if (!options.output.records_only() && lazy)
+        print_lazy_table(inputs, options, totals, *lazy, from);
+    else if (!options.output.records_only())
         print_table(inputs, options, totals, from);
     if (totals.violated || totals.ladder.broken)
         return 1;

@@ -8,7 +8,16 @@
 namespace cinch {
 
 /// Damage done on purpose, to see the verifier find it.
-enum class Sabotage { none, no_rounding, swap_interval, lower_h };
+enum class Sabotage { none, no_rounding, swap_interval, lower_h, stale };
+void damage(Bvh& bvh, Sabotage sabotage);
+
+/// Whose bounds are proven.
+enum class VerifiedUpdate {
+    refit, ///< all BVs by the methods
+    lazy,  ///< LazyRefit's at the end of a collision query: those on its cut and below by the methods, above it merged, leaves from vertices
+    full,  ///< the same with all leaves from their vertices, and all else merged
+    front, ///< the same with every BV that the query wants by the methods
+};
 
 struct VerifyOptions {
     InputOptions input;
@@ -19,7 +28,8 @@ struct VerifyOptions {
     RestShape rest_shape = RestShape::aabb;
     bool stats = false; ///< memory too
     int kdop = 6;
-    std::size_t leaf = 1; ///< triangles
+    VerifiedUpdate update = VerifiedUpdate::refit;
+    std::size_t leaf = 0; ///< most triangles; 0: 1 for refit, else 16
     int threads = 0;      ///< 0: as many as the machine has
     OutputOptions output;
     std::string certificate; ///< file to write; empty: none
@@ -28,7 +38,7 @@ struct VerifyOptions {
     Sabotage sabotage = Sabotage::none;
 };
 
-/// Refits every BV in every frame and proves every bound. Returns the exit status: 0 all proven, 1 a check failed, 130 interrupted.
+/// Updates BVs in every frame and proves every bound. Returns the exit status: 0 all proven, 1 a check failed, 130 interrupted.
 int verify(const VerifyOptions& options);
 
 } // namespace cinch

@@ -34,6 +34,16 @@ std::string direction_name(int kdop, int direction)
 
 } // namespace
 
+void print_examples(const VerifyTotals& totals, int kdop)
+{
+    for (const auto& example : totals.examples)
+        fmt::print("violated: frame {}, level {}, BV {}, {}: {}: {}\n", example.frame, example.level, example.violation.bv,
+                   direction_name(kdop, example.violation.direction), exact::name_of(example.violation.statement),
+                   example.violation.detail);
+    if (!totals.examples.empty())
+        fmt::print("\n");
+}
+
 void print_table(const Inputs& input, const VerifyOptions& options, const VerifyTotals& totals, const Provenance& from)
 {
     for (const std::string& line : input.report)
@@ -70,12 +80,7 @@ void print_table(const Inputs& input, const VerifyOptions& options, const Verify
         fmt::print("volume ratio: exact volume of the bound / exact volume of the true {}-DOP, on a sample\n"
                    "of each level; flat: BVs whose true {}-DOP has no volume.\n\n", options.kdop, options.kdop);
     }
-    for (const auto& example : totals.examples)
-        fmt::print("violated: frame {}, level {}, BV {}, {}: {}: {}\n", example.frame, example.level, example.violation.bv,
-                   direction_name(options.kdop, example.violation.direction), exact::name_of(example.violation.statement),
-                   example.violation.detail);
-    if (!totals.examples.empty())
-        fmt::print("\n");
+    print_examples(totals, options.kdop);
     if (totals.ladder.broken)
         fmt::print("order of the ladder: limited <= eq12 <= convex broken {} times in {}\n", grouped(totals.ladder.broken), grouped(totals.ladder.compared));
     else

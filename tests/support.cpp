@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/support.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
@@ -42,6 +43,18 @@ std::optional<std::filesystem::path> shared(const std::string& name)
         return path;
     std::cout << "SKIPPED: the reference material '" << name << "' is not here\n";
     return std::nullopt;
+}
+
+double test_share()
+{
+    const char* const text = std::getenv("CINCH_TEST_SHARE");
+    return text ? std::atof(text) : 1;
+}
+
+std::size_t share_of(std::size_t cases)
+{
+    const double share = std::clamp(test_share(), 0.0, 1.0);
+    return std::max<std::size_t>(1, static_cast<std::size_t>(share * static_cast<double>(cases)));
 }
 
 std::vector<std::string> Run::lines() const

@@ -75,6 +75,52 @@ TEST_CASE("the same seed gives the same records, whatever the thread count, and 
     CHECK(one != records("--seed 5"));
 }
 
+TEST_CASE("the BVs that stand after a collision query are proven, merged ones included, in float and in double")
+{
+    for (const char* options : {"santa-ring-1 --frames 12", "santa-ring-1 --frames 12 --precision double", "santa-ring-6 --frames 4 --kdop 18 --method eq12 --leaf 1",
+                                "santa-ring-5 --frames 4 --kdop 14 --rest obb --method limited --leaf 8"}) {
+        INFO(options);
+        const test::Run run = test::cinch(std::string("verify --update lazy --json ") + options);
+        CHECK(run.status == 0);
+        const json s = summary(run);
+        CHECK(s["bounds"] == s["proven"]);
+        CHECK(s["violated"] == 0);
+        CHECK(s["infinite"] == 0);
+        for (const char* kind : {"by_methods", "merged", "from_vertices", "left", "pairs"})
+            CHECK(s[kind] > 0);
+        CHECK(s["bounds"] == s["kdop"].get<std::size_t>() * (s["by_methods"].get<std::size_t>() + s["merged"].get<std::size_t>() + s["from_vertices"].get<std::size_t>()));
+    }
+    const json full = summary(test::cinch("verify fishes --update full --frames 2 --json"));
+    CHECK(full["bounds"] == full["proven"]);
+    CHECK(full["by_methods"] == 0);
+    CHECK(full["left"] == 0);
+    const json front = summary(test::cinch("verify santa-ring-5 --update front --frames 3 --json"));
+    CHECK(front["bounds"] == front["proven"]);
+    CHECK(front["merged"] == 0);
+}
+
+TEST_CASE("mutation: bounds of the frame before, and damaged rest data, are found after a collision query too")
+{
+    for (const char* kind : {"stale", "lower-h", "swap-interval"}) {
+        INFO(kind);
+        const test::Run run = test::cinch(std::string("verify santa-ring-1 --update lazy --frames 3 --json --sabotage ") + kind);
+        CHECK(run.status == 1);
+        CHECK(summary(run)["violated"] > 0);
+    }
+}
+
+TEST_CASE("what does not go with a collision query is refused")
+{
+    for (const char* options : {"brain --update lazy", "santa-ring-1 --body santa-1 --update lazy", "santa-ring-1 --update lazy --leaf 17", "santa-ring-1 --update full --volume",
+                                "santa-ring-1 --update lazy --sabotage no-rounding", "santa-ring-1 --sabotage stale", "santa-ring-1 --update eager"}) {
+        INFO(options);
+        const test::Run run = test::cinch(std::string("verify --frames 2 ") + options);
+        CHECK(run.status == 2);
+        CHECK(run.out.empty());
+        CHECK(run.err.starts_with("cinch: "));
+    }
+}
+
 TEST_CASE("mutation: sabotaged bounds are reported and exit 1")
 {
     for (const char* kind : {"no-rounding", "swap-interval", "lower-h"}) {

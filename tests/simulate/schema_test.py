@@ -63,7 +63,7 @@ small = {
                {"name": "sheet", "surface": "sheet", "box": [1, 1, 0], "cells": [3, 3, 1], "thickness": 0.01, "places": [[0, 0, 0], [0.3, 0, 0], [0, 0.3, 0]]}],
     "effects": [{"effect": "gravity", "acceleration": [0, 0, -1]}, {"effect": "elastic", "model": "stvk", "young": 1e4, "poisson": 0.3}, {"effect": "hourglass", "alpha": 0.5, "young": 10},
                 {"effect": "volume", "stiffness": 10}, {"effect": "plasticity", "yield": 0.1, "creep": 1, "most": 2}, {"effect": "viscosity", "viscosity": 2}, {"effect": "damping", "rate": 1},
-                {"effect": "ground", "point": [0, 0, 0], "normal": [0, 0, 1], "stiffness": 5, "friction": 0.1, "at": "nodes"},
+                {"effect": "ground", "point": [0, 0, 0], "normal": [0, 0, 1], "stiffness": 5, "friction": 0.1, "at": "nodes"}, {"effect": "contact", "stiffness": 100},
                 {"effect": "pulling", "nodes": "all", "force": [1, 0, 0], "start": 0, "end": 1, "period": 2, "bodies": ["bar"]},
                 {"effect": "pulling", "nodes": {"centre": [0, 0, 0], "radius": 2}, "stiffness": 5, "offset": [0, 0, 1], "ramp": 1, "bodies": ["bar"]},
                 {"effect": "pinned", "nodes": {"index": [0, 1]}, "bodies": ["bar"]},

@@ -224,6 +224,7 @@ bool Collider::find(Query query, const Sink& sink)
         list_leaves(tell);
     else if (go_on)
         test_leaves(query, tell);
+    counts_.updates = {}; // trees count from the beginning of the frame
     for (const LazyRefit& tree : trees_) {
         counts_.updates.bounds += tree.counts().bounds;
         counts_.updates.leaves += tree.counts().leaves;

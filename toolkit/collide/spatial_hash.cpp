@@ -43,7 +43,9 @@ void SpatialHash::load(std::span<const Body> bodies)
             bool finite = true;
             for (const Vec3& x : p)
                 finite &= x.allFinite();
-            const Aabb box{p[0].cwiseMin(p[1]).cwiseMin(p[2]), p[0].cwiseMax(p[1]).cwiseMax(p[2])};
+            Aabb box{p[0].cwiseMin(p[1]).cwiseMin(p[2]), p[0].cwiseMax(p[1]).cwiseMax(p[2])};
+            if (!finite) // apart from nothing; of NaN cwiseMin says nothing
+                box = {Vec3::Constant(-std::numeric_limits<double>::infinity()), Vec3::Constant(std::numeric_limits<double>::infinity())};
             items_.push_back({b, t, box, {}, !finite});
             if (!finite)
                 continue;

@@ -2,6 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#if defined(__SANITIZE_THREAD__)
+#include <atomic>
+#endif
 
 #include <tbb/parallel_for.h>
 
@@ -18,8 +21,21 @@ template <class Body> void parallel_blocks(std::size_t count, std::size_t grain,
     }
     tbb::task_group_context context(tbb::task_group_context::isolated,
                                     tbb::task_group_context::default_traits | tbb::task_group_context::fp_settings);
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, count, grain), [&](const auto& range) { body(range.begin(), range.end()); }, tbb::auto_partitioner(), context);
+    auto run = [&](const auto& range) { body(range.begin(), range.end()); };
+    const tbb::blocked_range<std::size_t> all(0, count, grain);
+#if defined(__SANITIZE_THREAD__) // says what a TBB without instrumentation cannot: pieces come after what was before, and before what is after
+    std::atomic<int> before{0}, after{0}; // two: pieces do not order each other
+    before.store(1, std::memory_order_release);
+    auto told = [&](const auto& range) {
+        before.load(std::memory_order_acquire);
+        run(range);
+        after.fetch_add(1, std::memory_order_release);
+    };
+    tbb::parallel_for(all, told, tbb::auto_partitioner(), context);
+    after.load(std::memory_order_acquire);
+#else
+    tbb::parallel_for(all, run, tbb::auto_partitioner(), context);
+#endif
 }
 
 } // namespace cinch

@@ -155,13 +155,16 @@ void Bounder::bound(std::size_t first, std::size_t last, std::span<double> suppo
     constexpr std::size_t block = 64;
     double own[block * 26];
     auto by_kernels = [&](const auto& parts, const auto& maps) {
-        for (const auto& part : parts)
-            for (std::size_t i = first; i < last; i += block) {
-                const std::size_t end = std::min(last, i + block);
-                const std::span<double> bounds = std::span(own).first((end - i) * k);
-                bound_packed(part->input(maps, p.options), i, end, part->scratch.local(), bounds);
+        for (const auto& part : parts) {
+            const auto& place = part->packed.place; // without leaves a BV does not stand where it does in the tree
+            const std::size_t at_once = place.empty() ? block : 1;
+            for (std::size_t i = first; i < last; i += at_once) {
+                const std::size_t count = std::min(last - i, at_once), at = place.empty() ? i : place[i];
+                const std::span<double> bounds = std::span(own).first(count * k);
+                bound_packed(part->input(maps, p.options), at, at + count, part->scratch.local(), bounds);
                 intersect<double>(supports.subspan((i - first) * k, bounds.size()), bounds);
             }
+        }
     };
     by_kernels(p.single, p.single_maps);
     by_kernels(p.twice, p.double_maps);

@@ -18,6 +18,8 @@ namespace cinch {
 namespace {
 
 constexpr float last_stamp = 0x1p24f; // floats count by ones up to here
+constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr float most_known = 0x1p120f; // of a given position, relative to the origin: sums of a few do not overflow
 
 RefitOptions refit_options(const LazyOptions& o) { return {o.methods, o.kdop, Rounding::proven, o.precision, 1, o.rest_shape}; }
 
@@ -210,9 +212,11 @@ void LazyRefit::place_leaves()
     const std::size_t lanes = leaves_.lanes, side = dop_side(options_.kdop);
     const auto axes = axes_of(options_.kdop);
     parallel_blocks(jobs_.size(), 64, [&](std::size_t first, std::size_t last) {
+        float unwanted[leaf_slot_floats(16)];
         for (const LeafJob& job : std::span(jobs_).subspan(first, last - first)) {
             const PackedLeaf& leaf = leaves_.leaves[job.leaf];
-            LeafPlace& place = place_of(job.slot, lanes);
+            float* const slot = job.slot ? job.slot : unwanted;
+            LeafPlace& place = place_of(slot, lanes);
             const Vec3& start = now_.positions[surface_.mesh.triangles[triangle_[leaf.first_triangle]][0]];
             float far = 0, out = 0;
             for (int r = 0; r < 3; ++r) {
@@ -220,29 +224,34 @@ void LazyRefit::place_leaves()
                 out = std::max(out, std::abs(place.reference[r]));
             }
             const std::uint8_t* const corner = reinterpret_cast<const std::uint8_t*>(leaves_.value.data() + leaf.first + LeafRun{lanes, leaf.nodes}.corners());
-            std::memcpy(job.slot + 3 * lanes, corner, 3 * lanes);
+            std::memcpy(slot + 3 * lanes, corner, 3 * lanes);
             for (std::size_t t = 0; t < lanes; ++t) { // every vertex is a corner
                 const Triangle& triangle = surface_.mesh.triangles[triangle_[leaf.first_triangle + std::min<std::size_t>(t, leaf.triangles - 1)]];
                 for (std::size_t c = 0; c < 3; ++c)
                     for (std::size_t r = 0; r < 3; ++r) {
                         const int row = static_cast<int>(r);
                         const auto x = static_cast<float>((now_.positions[triangle[c]][row] - origin_[row]) - static_cast<double>(place.reference[r]));
-                        job.slot[r * lanes + corner[c * lanes + t]] = x;
+                        slot[r * lanes + corner[c * lanes + t]] = x;
                         far = std::max(far, std::abs(x));
                     }
             }
             for (std::size_t r = 0; r < 3; ++r)
-                std::fill_n(job.slot + r * lanes + leaf.vertices, lanes - leaf.vertices, job.slot[r * lanes]);
+                std::fill_n(slot + r * lanes + leaf.vertices, lanes - leaf.vertices, slot[r * lanes]);
+            if (!(far < most_known && out < most_known)) { // as in evaluate_leaf
+                std::fill_n(slot, 3 * lanes, 0.0f);
+                place = {{0, 0, 0}, infinity, infinity};
+                std::fill_n(job.dop, axes.size(), infinity);
+                std::fill_n(job.dop + side, axes.size(), infinity);
+                continue;
+            }
             place.error = succ(2 * unit_roundoff_of<float> * far + 0x1p-50f * (far + out));
             place.difference = 2 * place.error;
-            if (!(far < std::numeric_limits<float>::infinity() && out < std::numeric_limits<float>::infinity()))
-                place.error = place.difference = std::numeric_limits<float>::infinity();
             for (std::size_t a = 0; a < axes.size(); ++a) {
-                float most = -std::numeric_limits<float>::infinity(), least = -most, middle = 0;
+                float most = -infinity, least = infinity, middle = 0;
                 for (std::size_t v = 0; v < lanes; ++v) {
                     float along = 0;
                     for (std::size_t r = 0; r < 3; ++r)
-                        along += static_cast<float>(axes[a][r]) * job.slot[r * lanes + v];
+                        along += static_cast<float>(axes[a][r]) * slot[r * lanes + v];
                     most = std::max(most, along);
                     least = std::min(least, along);
                 }

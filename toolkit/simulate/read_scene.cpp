@@ -147,6 +147,8 @@ What read_ground(JsonFields& f)
     return GroundSpec{ground};
 }
 
+What read_contact(JsonFields& f) { return ContactSpec{f.number("stiffness", JsonFields::positive())}; }
+
 What read_pinned(JsonFields& f) { return PinnedSpec{read_nodes(f, "nodes")}; }
 
 What read_scripted(JsonFields& f)
@@ -168,7 +170,7 @@ What read_scripted(JsonFields& f)
 constexpr Kind kinds[] = {
     {"gravity", read_gravity},       {"pulling", read_pulling},       {"elastic", read_elastic},   {"volume", read_volume},
     {"hourglass", read_hourglass},   {"plasticity", read_plasticity}, {"viscosity", read_viscosity}, {"damping", read_damping},
-    {"ground", read_ground},         {"pinned", read_pinned},         {"scripted", read_scripted},
+    {"ground", read_ground},         {"contact", read_contact},       {"pinned", read_pinned},     {"scripted", read_scripted},
 };
 
 std::array<int, 3> read_cells(JsonFields& f, const std::string& key)

@@ -67,6 +67,9 @@ struct DampingSpec {
 struct GroundSpec {
     Ground ground;
 };
+struct ContactSpec { ///< of the bodies of its effect with each other
+    double stiffness = 0; ///< Pa/m
+};
 struct PinnedSpec {
     NodeSelection nodes;
 };
@@ -80,7 +83,7 @@ struct ScriptedSpec { ///< axis and centre in the world
 struct SceneEffect {
     std::vector<std::string> bodies; ///< names; empty: all
     std::variant<GravitySpec, PullingForceSpec, PullingTargetSpec, ElasticSpec, VolumeSpec, HourglassSpec, PlasticitySpec, ViscositySpec, DampingSpec,
-                 GroundSpec, PinnedSpec, ScriptedSpec>
+                 GroundSpec, ContactSpec, PinnedSpec, ScriptedSpec>
         what;
     std::string path; ///< in the file, for messages
 };

@@ -102,6 +102,7 @@ private:
     void add(const ViscositySpec& s) { out_.add(make_viscosity(s.viscosity)); }
     void add(const DampingSpec& s) { out_.add(make_mass_damping(s.rate)); }
     void add(const GroundSpec& s) { out_.add(make_ground(s.ground)); }
+    void add(const ContactSpec&) {} // of several bodies, see search_contacts
     void add(const PinnedSpec& s)
     {
         std::vector<std::uint32_t> nodes = select(s.nodes);
@@ -144,6 +145,25 @@ bool follows_clip(const Scene& scene, const SceneBody& body)
     return false;
 }
 
+std::unique_ptr<ContactSearch> search_contacts(const SceneEffect& effect, const ContactSpec& spec, std::vector<Simulation::Body>& bodies, const std::string& file)
+{
+    auto search = std::make_unique<ContactSearch>(spec.stiffness);
+    std::size_t members = 0;
+    for (Simulation::Body& body : bodies) {
+        if (!effect.bodies.empty() && std::find(effect.bodies.begin(), effect.bodies.end(), body.name) == effect.bodies.end())
+            continue;
+        if (!body.simulation.surface())
+            throw InputError::in_file(file, effect.path + ": body '" + body.name + "' has no surface to touch others with");
+        auto contact = std::make_unique<BodyContact>();
+        search->add(body.simulation, *contact);
+        body.simulation.add(std::move(contact));
+        ++members;
+    }
+    if (members < 2)
+        throw InputError::in_file(file, effect.path + ": needs at least two bodies");
+    return search;
+}
+
 } // namespace
 
 Simulation::Simulation(Scene scene, const std::string& file) : scene_(std::move(scene))
@@ -182,6 +202,9 @@ Simulation::Simulation(Scene scene, const std::string& file) : scene_(std::move(
         Builder(scene_, spec, file, loaded, x, made).build();
         made.place(x, v);
     }
+    for (const SceneEffect& effect : scene_.effects)
+        if (const auto* spec = std::get_if<ContactSpec>(&effect.what))
+            contacts_.push_back(search_contacts(effect, *spec, bodies_, file));
 }
 
 std::size_t Simulation::frame_count() const { return static_cast<std::size_t>(std::floor(scene_.duration_s / scene_.frame_s + 1e-9)) + 1; }
@@ -191,13 +214,16 @@ std::vector<StepReport> Simulation::advance()
     require_default_arithmetic();
     std::vector<std::string> before(bodies_.size());
     std::vector<StepReport> reports(bodies_.size());
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+        std::ostringstream state;
+        bodies_[b].simulation.save(state);
+        before[b] = std::move(state).str();
+    }
+    for (const auto& search : contacts_)
+        search->find();
     parallel_blocks(bodies_.size(), 1, [&](std::size_t first, std::size_t last) {
-        for (std::size_t b = first; b < last; ++b) {
-            std::ostringstream state;
-            bodies_[b].simulation.save(state);
-            before[b] = std::move(state).str();
+        for (std::size_t b = first; b < last; ++b)
             reports[b] = bodies_[b].simulation.advance(scene_.frame_s, scene_.integration);
-        }
     });
     if (std::any_of(reports.begin(), reports.end(), [](const StepReport& r) { return !r.failure.empty(); })) {
         for (std::size_t b = 0; b < bodies_.size(); ++b) {

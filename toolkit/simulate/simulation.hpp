@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "toolkit/simulate/contact_search.hpp"
 #include "toolkit/simulate/scene.hpp"
 
 namespace cinch {
@@ -18,7 +19,8 @@ public:
     /// cannot be: missing files, selections without nodes, effects that need what is not there.
     Simulation(Scene scene, const std::string& file);
 
-    /// From one frame to the next. Bodies are independent of each other, and run in parallel; the same bits for any thread count.
+    /// From one frame to the next. Where the scene names contacts between bodies, these are found first, and hold for the frame; then
+    /// bodies are independent of each other, and run in parallel. The same bits for any thread count.
     /// One report per body; if one failed, every body has the state of before.
     std::vector<StepReport> advance();
 
@@ -28,6 +30,7 @@ public:
     std::size_t frame() const { return frame_; } ///< 0 at the start
     std::size_t frame_count() const;             ///< the first one at time 0 included
     double time_s() const { return static_cast<double>(frame_) * scene_.frame_s; }
+    std::span<const std::unique_ptr<ContactSearch>> contacts() const { return contacts_; }
 
     /// The state, so that restore() on the same scene continues bit for bit.
     void save(std::ostream& out) const;
@@ -36,6 +39,7 @@ public:
 private:
     Scene scene_;
     std::vector<Body> bodies_;
+    std::vector<std::unique_ptr<ContactSearch>> contacts_; ///< one per effect 'contact'
     std::size_t frame_ = 0;
 };
 

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "toolkit/simulate/effect.hpp"
+
+namespace cinch {
+
+/// A point of a body's surface, Σ_c share_c v_c over the corners of a triangle, that belongs in front of a plane.
+struct Contact {
+    std::array<std::uint32_t, 3> corner{};
+    std::array<double, 3> share{}; ///< ≥ 0, sum 1
+    std::array<double, 3> normal{}; ///< of length 1
+    double offset = 0;             ///< the plane is normal·x = offset, m
+    double stiffness = 0;          ///< k, N/m
+};
+
+/// Planes that push points of one body back: ½ k d² at depth d behind. ContactSearch finds them anew before every frame.
+class BodyContact final : public Effect {
+public:
+    BodyContact() : Effect("contact") {}
+
+    void set(std::vector<Contact> contacts) { contacts_ = std::move(contacts); }
+    const std::vector<Contact>& contacts() const { return contacts_; }
+
+    bool needs_deformation() const override { return true; }
+    double energy(const Configuration& c) const override;
+    void add_forces(const Configuration& c, Forces out) const override;
+    bool couples_nodes() const override { return true; }
+    void prepare_product(const Configuration& c, bool worst) override;
+    void add_product(const Configuration& c, const Field& dx, const MatrixField& dj, Forces out) const override;
+    void add_diagonal(const Configuration& c, std::vector<Mat3>& block) const override;
+    double longest_step(const Configuration& c) const override;
+    void save(std::ostream& out) const override;
+    void restore(std::istream& in) override;
+
+private:
+    std::vector<Contact> contacts_;
+    std::vector<std::size_t> touching_; ///< in the configuration of prepare_product
+};
+
+} // namespace cinch
