@@ -310,7 +310,7 @@ void add_corners(CLI::App& app, CornersOptions& o)
 {
     CLI::App& command = *app.add_subcommand("corners", "true corners of a weight space, and maxima");
     auto option = [&](const char* name, auto& value, const std::string& description) { return command.add_option(name, value, wrapped(description)); };
-    option("CASE", o.files, "case files, see below")->required()->option_text("FILE...");
+    option("CASE", o.files, "case files, see below, or names of shipped cases (data/cases)")->required()->option_text("FILE...");
     add_output(command, o.output, Draws::nothing);
     command.add_flag("--list", o.list, wrapped("print every corner, as fractions p/q, as they are found"));
     option("--limit", o.limit, "most corners to list per file [all]")->check(CLI::Range(1, std::numeric_limits<int>::max()))->option_text("N");
@@ -322,6 +322,7 @@ void add_corners(CLI::App& app, CornersOptions& o)
                    "  cinch corners space.json          count, exact maximum, Eq. 12, bound per row\n"
                    "  cinch corners *.json --json       the same as JSON Lines\n"
                    "  cinch corners space.json --list --limit 10\n"
+                   "  cinch corners 038_hyper_n5        a case that comes with the program\n"
                    "\n"
                    "Exit status: 0 done, 1 a toolkit bound lies below the exact maximum, 2 bad\n"
                    "usage or input (other files are still answered), 130 interrupted.");

@@ -30,10 +30,10 @@ template <class Better> Traced extreme(const std::vector<Traced>& all, Better be
     return best;
 }
 
-// What the page reads; anything else may be what it likes.
+// What the page reads and no two commands call by the same name with another type; anything else may be what it likes.
 constexpr std::array texts{"experiment", "command", "commit", "version", "cpu", "simd_target", "method", "precision", "input", "motion", "arithmetic", "guarantee", "scene", "backend",
                            "file", "figure", "stage", "finished"};
-constexpr std::array numbers{"seed", "threads", "n", "vertices", "ns_per_bound", "level", "bvs", "mean_ratio", "max_ratio", "box_loss", "interval_loss", "method_loss", "kdop",
+constexpr std::array numbers{"seed", "threads", "n", "vertices", "ns_per_bound", "level", "bvs", "mean_ratio", "max_ratio", "kdop",
                              "below_exact", "ratio_to_double", "frames", "bodies", "evaluate_ms", "update_ms", "query_ms", "total_ms", "pairs", "pairs_differing", "megabytes_per_body",
                              "mean_vertices", "mean_bounds", "mean_box_tests", "passes", "gap_percent", "least_n", "most_n", "bounds", "proven", "violated", "seconds", "lines", "status"};
 constexpr std::array required{"experiment", "command", "commit", "seed", "cpu"};
@@ -73,6 +73,7 @@ Traced operator-(const Traced& a, const Traced& b) { return combined(a, b, a.val
 Traced operator*(const Traced& a, const Traced& b) { return combined(a, b, a.value * b.value); }
 Traced operator/(const Traced& a, const Traced& b) { return combined(a, b, a.value / b.value); }
 Traced operator/(double a, const Traced& b) { return {a / b.value, b.from}; }
+Traced operator-(double a, const Traced& b) { return {a - b.value, b.from}; }
 Traced operator/(const Traced& a, double b) { return {a.value / b, a.from}; }
 
 Traced mean(const std::vector<Traced>& all)

@@ -43,6 +43,7 @@ Traced operator-(const Traced& a, const Traced& b);
 Traced operator*(const Traced& a, const Traced& b);
 Traced operator/(const Traced& a, const Traced& b);
 Traced operator/(double a, const Traced& b);
+Traced operator-(double a, const Traced& b);
 Traced operator/(const Traced& a, double b);
 /// The known ones of these; unknown if there are none.
 Traced mean(const std::vector<Traced>& all);
