@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "experiments/shipped.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 
 namespace cinch {
@@ -125,6 +126,12 @@ Case parse_case(const std::string& text, const std::string& file)
     return CaseReader(file).read(root);
 }
 
-Case read_case(const std::filesystem::path& path) { return parse_case(read_bytes(path), path.string()); }
+Case read_case(const std::filesystem::path& path)
+{
+    std::error_code error;
+    const std::filesystem::path shipped = shipped_folder("cases") / (path.string() + ".json");
+    const bool known = path.has_filename() && !path.has_parent_path() && !std::filesystem::exists(path, error) && std::filesystem::exists(shipped, error);
+    return parse_case(read_bytes(known ? shipped : path), path.string());
+}
 
 } // namespace cinch

@@ -36,11 +36,15 @@ template <class Enum> CLI::Validator one_of(std::vector<std::pair<std::string, E
         "");
 }
 
-void add_output(CLI::App& command, OutputOptions& o)
+enum class Draws { charts, nothing };
+
+void add_output(CLI::App& command, OutputOptions& o, Draws draws = Draws::charts)
 {
     CLI::Option* json = command.add_flag("--json", o.json, "JSON Lines on standard output and nothing else");
     command.add_flag("--csv", o.csv, "the same as comma-separated values")->excludes(json);
-    command.add_option("--plot", o.plot, wrapped("draw charts as SVG, by gnuplot"))->option_text("FILE.svg");
+    if (draws == Draws::charts)
+        command.add_option("--plot", o.plot, wrapped("draw charts as SVG, by gnuplot"))->option_text("FILE.svg");
+    command.add_option("--report", o.report, wrapped("write a page with the results, beside the paper's where it has them"))->option_text("FILE.html");
 }
 
 void add_arithmetic(CLI::App& command, Precision& precision, int& passes)
@@ -111,8 +115,8 @@ void add_simulate(CLI::App& app, SimulateOptions& o)
     option("--every", o.every, "frames from checkpoint to checkpoint [10]")->check(CLI::Range(1, 1000000))->option_text("N");
     option("--threads", o.threads, "threads [all cores]; the results are the same")->check(CLI::Range(1, 1024))->option_text("N");
     command.add_flag("--explain", o.explain, wrapped("say what was left out, and how often each effect was called"));
-    command.add_flag("--energies", o.energies, wrapped("with --json: a record of every body in every frame"));
-    command.add_flag("--json", o.json, "JSON Lines on standard output and nothing else");
+    command.add_flag("--energies", o.energies, wrapped("a record of every body in every frame too"));
+    add_output(command, o.output, Draws::nothing);
     command.footer("Examples:\n"
                    "  cinch simulate brain-pull --explain\n"
                    "  cinch simulate santa-ring-3 --frames ring.frames --checkpoint ring.state\n"
@@ -202,6 +206,41 @@ void add_view(CLI::App& app, ViewOptions& o)
                    "views and methods that were done).");
 }
 
+void add_reproduce(CLI::App& app, ReproduceOptions& o)
+{
+    CLI::App& command = *app.add_subcommand("reproduce", "all of the paper's tables and figures, as a page");
+    command.add_flag("--quick", o.quick, wrapped("fewer scenes, frames and repetitions: under three minutes on two cores, instead of under 45"));
+    command.add_option("--out", o.out, wrapped("folder for the results and report.html [results]"))->option_text("DIR");
+    command.add_option("--seed", o.seed, wrapped("seed of everything random [0]"))->option_text("N");
+    command.footer("Runs the experiments that are not in DIR yet, for this commit and these options,\n"
+                   "each by a command of this program, whose JSON Lines become DIR/NAME.jsonl. Then\n"
+                   "writes DIR/report.html: the paper's figures beside these, one file to send\n"
+                   "around. Stopped or killed, the same command continues.\n"
+                   "\n"
+                   "Examples:\n"
+                   "  cinch reproduce --quick --out quick    a first look\n"
+                   "  cinch reproduce                        everything\n"
+                   "  cinch report results                   the page again\n"
+                   "\n"
+                   "Exit status: 0 done, 1 an experiment failed or a stored result is damaged (the\n"
+                   "rest is done), 2 bad usage, 130 interrupted (what is finished is kept).");
+}
+
+void add_report(CLI::App& app, ReportOptions& o)
+{
+    CLI::App& command = *app.add_subcommand("report", "the page of 'cinch reproduce', from stored results");
+    command.add_option("DIR", o.folder, wrapped("folder that 'cinch reproduce --out DIR' wrote"))->required()->option_text("");
+    command.add_option("--page", o.page, wrapped("file to write [DIR/report.html]"))->option_text("FILE.html");
+    command.footer("A file that is truncated or damaged is named, with the line, and left out.\n"
+                   "\n"
+                   "Examples:\n"
+                   "  cinch report results\n"
+                   "  cinch report results --page paper.html\n"
+                   "\n"
+                   "Exit status: 0 done, 1 a file is damaged (the page has the rest), 2 bad usage, or\n"
+                   "no results.");
+}
+
 #ifdef CINCH_EXACT
 
 void add_methods(CLI::App& command, Methods& methods)
@@ -231,7 +270,7 @@ void add_verify(CLI::App& app, VerifyOptions& o)
         ->option_text("KIND");
     option("--leaf", o.leaf, "most triangles per leaf [1; 16 with --update]")->check(CLI::Range(1, 1000000))->option_text("N");
     option("--threads", o.threads, "threads [all cores]")->check(CLI::Range(1, 1024))->option_text("N");
-    command.add_flag("--json", o.json, "JSON Lines on standard output and nothing else");
+    add_output(command, o.output);
     option("--certificate", o.certificate, "write a proof of every bound, for experiments/check_certificate.py; compressed if it ends in .gz")
         ->option_text("FILE");
     option("--vipr", o.vipr, "write single bounds of the last frame (first BV of each level) as VIPR files, for viprchk")->option_text("DIR");
@@ -315,8 +354,8 @@ void add_corners(CLI::App& app, CornersOptions& o)
 {
     CLI::App& command = *app.add_subcommand("corners", "true corners of a weight space, and maxima");
     auto option = [&](const char* name, auto& value, const std::string& description) { return command.add_option(name, value, wrapped(description)); };
-    option("CASE", o.files, "case files, see below")->required()->option_text("FILE...");
-    command.add_flag("--json", o.json, "JSON Lines on standard output and nothing else");
+    option("CASE", o.files, "case files, see below, or names of shipped cases (data/cases)")->required()->option_text("FILE...");
+    add_output(command, o.output, Draws::nothing);
     command.add_flag("--list", o.list, wrapped("print every corner, as fractions p/q, as they are found"));
     option("--limit", o.limit, "most corners to list per file [all]")->check(CLI::Range(1, std::numeric_limits<int>::max()))->option_text("N");
     command.footer("A case file is {\"n\":3,\"l\":[...],\"h\":[...],\"b\":[[...],...]}: weight intervals\n"
@@ -327,6 +366,7 @@ void add_corners(CLI::App& app, CornersOptions& o)
                    "  cinch corners space.json          count, exact maximum, Eq. 12, bound per row\n"
                    "  cinch corners *.json --json       the same as JSON Lines\n"
                    "  cinch corners space.json --list --limit 10\n"
+                   "  cinch corners 038_hyper_n5        a case that comes with the program\n"
                    "\n"
                    "Exit status: 0 done, 1 a toolkit bound lies below the exact maximum, 2 bad\n"
                    "usage or input (other files are still answered), 130 interrupted.");
@@ -340,7 +380,7 @@ void add_stability(CLI::App& app, StabilityOptions& o)
     command.add_option("--without", o.missing, wrapped("take a safeguard away, to see which cases need it: hourglass, completion or projection"))
         ->transform(one_of<Missing>({{"hourglass", Missing::hourglass}, {"completion", Missing::completion}, {"projection", Missing::projection}}))
         ->option_text("NAME");
-    command.add_flag("--json", o.json, "JSON Lines on standard output and nothing else");
+    add_output(command, o.output, Draws::nothing);
     command.footer("Examples:\n"
                    "  cinch stability                       all cases, about ten seconds\n"
                    "  cinch stability --case inverted,flat\n"
@@ -372,7 +412,7 @@ void add_fuzz(CLI::App& app, FuzzOptions& o)
     option("--resume", o.resume, "keep the state in this file, and continue from it if it is there")->option_text("FILE");
     option("--corpus", o.corpus, "where shrunk failures are saved [data/hard]")->option_text("DIR");
     option("--threads", o.threads, "threads [all cores]")->check(CLI::Range(1, 1024))->option_text("N");
-    command.add_flag("--json", o.json, "JSON Lines on standard output and nothing else");
+    add_output(command, o.output, Draws::nothing);
     option("--sabotage", o.defect,
            "for tests: plant a defect: no-rounding, lower-h and small-box must be found, wrong-lambda and sum-order must prove harmless; nothing is saved")
         ->transform(one_of<Defect>({{"no-rounding", Defect::no_rounding}, {"wrong-lambda", Defect::wrong_lambda}, {"lower-h", Defect::lower_h},

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "experiments/collide/collide.hpp"
+#include "experiments/report/reproduce.hpp"
 #include "experiments/scaling.hpp"
 #include "experiments/simulation/cost_simulation.hpp"
 #include "experiments/simulation/simulate.hpp"
@@ -24,6 +25,8 @@ void add_scaling(CLI::App& app, ScalingOptions& o);
 void add_simulate(CLI::App& app, SimulateOptions& o);
 void add_collide(CLI::App& app, CollideOptions& o);
 void add_view(CLI::App& app, ViewOptions& o);
+void add_reproduce(CLI::App& app, ReproduceOptions& o);
+void add_report(CLI::App& app, ReportOptions& o);
 #ifdef CINCH_EXACT
 void add_verify(CLI::App& app, VerifyOptions& o);
 void add_tightness(CLI::App& app, TightnessOptions& o);

@@ -17,7 +17,7 @@
 namespace cinch {
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 // The toolkit's proven bound for extrema that are exact as given: method `limited` without a box.
 double toolkit_bound(WeightSpace space, const std::vector<double>& b)
@@ -32,15 +32,15 @@ struct Row {
     double bound = 0;
 };
 
-void print_record(const std::string& file, bool feasible, const exact::CornerCount& count, const std::vector<Row>& rows)
+Json record_of(const std::string& file, const Case& problem, bool feasible, const exact::CornerCount& count, const std::vector<Row>& rows)
 {
-    json record{{"experiment", "corners"}, {"file", file}, {"feasible", feasible}, {"vertex_count", nullptr}, {"rows", json::array()}};
+    Json record{{"experiment", "corners"}, {"file", file}, {"n", problem.space().l.size()}, {"feasible", feasible}, {"vertex_count", nullptr}, {"rows", Json::array()}};
     if (count.count)
         record["vertex_count"] = *count.count;
     else
         record["vertex_count_reason"] = count.reason;
     for (const Row& row : rows) {
-        json r{{"exact_max", nullptr}, {"eq12", nullptr}, {"bound", nullptr}, {"lambda", nullptr}};
+        Json r{{"exact_max", nullptr}, {"eq12", nullptr}, {"bound", nullptr}, {"lambda", nullptr}};
         if (row.answer) {
             r = {{"exact_max", row.answer->maximum}, {"eq12", nullptr}, {"bound", fmt::format("{:a}", row.bound)}, {"lambda", row.answer->lambda},
                  {"corner", row.answer->corner}, {"bound_holds", row.answer->bound_holds}};
@@ -49,7 +49,7 @@ void print_record(const std::string& file, bool feasible, const exact::CornerCou
         }
         record["rows"].push_back(r);
     }
-    fmt::print("{}\n", record.dump(-1, ' ', false, json::error_handler_t::replace));
+    return record;
 }
 
 void print_text(const std::string& file, bool feasible, const exact::CornerCount& count, const std::vector<Row>& rows)
@@ -70,8 +70,8 @@ bool list_corners(const std::string& file, WeightSpace space, const CornersOptio
     std::uint64_t listed = 0;
     exact::visit_corners(space, [&](const exact::CornerRun& run, const exact::Corner& corner) {
         const std::vector<std::string> weights = exact::weights_of(space, run, corner);
-        if (options.json)
-            fmt::print("{}\n", json{{"experiment", "corners"}, {"file", file}, {"corner", weights}}.dump(-1, ' ', false, json::error_handler_t::replace));
+        if (options.output.json) // one of very many: without provenance
+            fmt::print("{}\n", Json{{"experiment", "corners"}, {"file", file}, {"corner", weights}}.dump(-1, ' ', false, Json::error_handler_t::replace));
         else
             fmt::print("{}\n", fmt::join(weights, " "));
         return ++listed != options.limit && !interrupted();
@@ -85,10 +85,11 @@ int corners(const CornersOptions& options)
 {
     require_default_arithmetic();
     catch_interrupt();
+    RecordOutput output(options.output, provenance(1, 0));
     int status = 0;
     for (const std::string& file : options.files) {
         if (interrupted())
-            return 130;
+            break;
         try {
             const Case problem = read_case(file);
             const bool feasible = exact::is_feasible(problem.space());
@@ -101,16 +102,19 @@ int corners(const CornersOptions& options)
                     status = std::max(status, 1);
                 rows.push_back(std::move(row));
             }
-            (options.json ? print_record : print_text)(file, feasible, count, rows);
+            output.add(record_of(file, problem, feasible, count, rows));
+            if (!options.output.records_only())
+                print_text(file, feasible, count, rows);
             if (options.list && !list_corners(file, problem.space(), options))
-                return 130;
+                break;
         } catch (const InputError& error) {
             std::fflush(stdout);
             fmt::print(stderr, "cinch: {}\n", error.what());
             status = 2;
         }
     }
-    return status;
+    output.finish();
+    return interrupted() ? 130 : status;
 }
 
 } // namespace cinch

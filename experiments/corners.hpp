@@ -5,11 +5,13 @@
 #include <string>
 #include <vector>
 
+#include "experiments/report/record_output.hpp"
+
 namespace cinch {
 
 struct CornersOptions {
     std::vector<std::string> files;
-    bool json = false;
+    OutputOptions output;
     bool list = false;
     std::uint64_t limit = 0; ///< most corners listed per file; 0: all
 };

@@ -48,6 +48,10 @@ int main(int argc, char** argv)
     add_collide(app, collide_options);
     ViewOptions view_options;
     add_view(app, view_options);
+    ReproduceOptions reproduce_options;
+    add_reproduce(app, reproduce_options);
+    ReportOptions report_options;
+    add_report(app, report_options);
     const auto run = [&](const CLI::App& parsed) -> int {
 #ifdef CINCH_EXACT
         if (parsed.got_subcommand("verify"))
@@ -81,6 +85,10 @@ int main(int argc, char** argv)
             return collide(collide_options);
         if (parsed.got_subcommand("view"))
             return view(view_options);
+        if (parsed.got_subcommand("reproduce"))
+            return reproduce(reproduce_options);
+        if (parsed.got_subcommand("report"))
+            return report(report_options);
         return parsed.get_subcommands().empty() ? bad_input : 0;
     };
     if (const char* target = std::getenv("CINCH_TARGET"); target && *target && !force_kernel_target(target)) {

@@ -11,6 +11,7 @@
 #include "experiments/measure/race.hpp"
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/number.hpp"
+#include "experiments/report/paper_figures.hpp"
 #include "experiments/report/progress.hpp"
 #include "experiments/report/table.hpp"
 #include "toolkit/bounds/bound_box.hpp"
@@ -23,11 +24,12 @@ namespace {
 
 constexpr std::size_t node_counts[] = {65, 225, 509};
 struct Size {
-    const char* shape;
+    const char *shape, *paper; ///< and its name in the paper's Table 1
     std::size_t vertices;
-    double paper_us[3], paper_optimal_us; ///< on a 3.4 GHz Pentium 4
+
+    double paper_us(const std::string& column) const { return paper_figure("Table 1", paper, column).value; } ///< on a 3.4 GHz Pentium 4
 };
-constexpr Size sizes[] = {{"brain-3500", 3500, {15, 35, 90}, 2.0e3}, {"brain-30000", 30000, {18, 48, 100}, 17.2e3}, {"brain-145000", 145000, {18, 46, 100}, 82.5e3}};
+constexpr Size sizes[] = {{"brain-3500", "3.5K", 3500}, {"brain-30000", "30K", 30000}, {"brain-145000", "145K", 145000}};
 
 // Names in the order of the table; "unproven" is the default method without its error terms.
 const std::vector<std::string> contestants = {"textbook", "textbook-axes", "convex", "sphere", "corners", "eq12", "limited", "local", "support", "linear", "best", "unproven", "optimal"};
@@ -139,7 +141,7 @@ void print_rows(const std::vector<nlohmann::ordered_json>& records)
 }
 
 // The same measurement on what the user names, in its last frame: with the paper's numbers of simulation nodes where these can be chosen.
-int scaling_of(const ScalingOptions& options)
+int scaling_of(const ScalingOptions& options, const Provenance& from, RecordOutput& output)
 {
     std::vector<nlohmann::ordered_json> records;
     InputOptions what;
@@ -158,9 +160,9 @@ int scaling_of(const ScalingOptions& options)
             records.push_back({{"experiment", "scaling"}, {"input", input.name}, {"method", name}, {"precision", name_of(options.precision)},
                                {"n", input.surface.weights.node_count}, {"vertices", input.surface.mesh.vertices.size()}, {"ns_per_bound", times.ns.at(name)}});
     }
-    const Provenance from = provenance(1, options.seed);
-    print_records(records, options.output, from);
-    if (!options.output.json && !options.output.csv) {
+    output.add_all(records);
+    output.finish();
+    if (!options.output.records_only()) {
         for (const std::string& line : input.report)
             fmt::print("{}\n", line);
         fmt::print("\nTime of one bound of the whole surface (six directions), {}\n\n", name_of(options.precision));
@@ -179,13 +181,12 @@ int scaling_of(const ScalingOptions& options)
 
 int scaling(const ScalingOptions& options)
 {
-    require_plottable(options.output.plot);
-    if (!options.input.empty() && !options.output.plot.empty())
-        throw InputError("--plot is of the brain's table; use --csv with an input of your own");
+    const Provenance from = provenance(1, options.seed);
+    RecordOutput output(options.output, from);
     pin_to_one_core();
     catch_interrupt();
     if (!options.input.empty())
-        return scaling_of(options);
+        return scaling_of(options, from, output);
     Times times[3][3];
     std::vector<nlohmann::ordered_json> records;
     {
@@ -204,35 +205,23 @@ int scaling(const ScalingOptions& options)
                 for (const std::string& name : contestants)
                     records.push_back({{"experiment", "scaling"}, {"method", name}, {"precision", name_of(options.precision)}, {"n", node_counts[n]},
                                        {"vertices", sizes[v].vertices}, {"ns_per_bound", times[v][n].ns.at(name)},
-                                       {"paper_us", name == "optimal" ? sizes[v].paper_optimal_us : sizes[v].paper_us[n]}});
+                                       {"paper_us", sizes[v].paper_us(name == "optimal" ? name : std::to_string(node_counts[n]))}});
                 progress.done(3 * v + n + 1);
             }
     }
-    const Provenance from = provenance(1, options.seed);
     const bool whole = records.size() == 9 * contestants.size();
     if (whole)
         for (const Figure& f : figures_of(times))
             records.push_back({{"experiment", "scaling"}, {"figure", f.what}, {"measured", f.measured}, {"target", f.target}, {"reached", f.reached}});
-    print_records(records, options.output, from);
+    output.add_all(records);
+    output.finish();
     if (!whole) {
-        if (!options.output.json && !options.output.csv)
+        if (!options.output.records_only())
             print_rows(records);
         fmt::print(stderr, "cinch: interrupted after {} of 9 sizes\n", records.size() / contestants.size());
         return 130;
     }
-    if (!options.output.plot.empty()) {
-        Chart chart{"Time of one bound, 30,000 vertices", "simulation nodes n", "microseconds", true, true, {}};
-        for (const std::string& name : contestants) {
-            Series series{name, {}, {}};
-            for (std::size_t n = 0; n < 3; ++n) {
-                series.x.push_back(static_cast<double>(node_counts[n]));
-                series.y.push_back(times[1][n].ns.at(name) / 1e3);
-            }
-            chart.series.push_back(std::move(series));
-        }
-        plot({chart}, options.output.plot);
-    }
-    if (options.output.json || options.output.csv)
+    if (options.output.records_only())
         return 0;
     fmt::print("Time of one bound of the whole brain (six directions), microseconds, {}\n\n", name_of(options.precision));
     std::vector<std::vector<std::string>> rows;
@@ -249,8 +238,8 @@ int scaling(const ScalingOptions& options)
     }
     std::vector<std::string> paper{"paper"};
     for (const Size& size : sizes)
-        for (const double us : size.paper_us)
-            paper.push_back(fmt::format("{:.0f}", us));
+        for (const std::size_t n : node_counts)
+            paper.push_back(fmt::format("{:.0f}", size.paper_us(std::to_string(n))));
     paper.push_back("");
     rows.push_back(paper);
     fmt::print("           3.5K vertices      30K                145K\n{}\n",

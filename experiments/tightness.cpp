@@ -160,7 +160,8 @@ int tightness(const TightnessOptions& given)
     std::vector<std::string> names;
     for (const Methods methods : options.methods)
         names.push_back(name_of(methods));
-    require_plottable(options.output.plot);
+    const Provenance from = provenance(threads, options.input.seed);
+    RecordOutput output(options.output, from);
     catch_interrupt();
 
     const Input first = load_input(options.input);
@@ -210,38 +211,9 @@ int tightness(const TightnessOptions& given)
     }
     for (const Figure& f : figures)
         records.push_back({{"experiment", "tightness"}, {"input", first.name}, {"figure", f.what}, {"measured", f.measured}, {"target", f.target}, {"reached", f.reached}});
-    const Provenance from = provenance(threads, options.input.seed);
-    print_records(records, options.output, from);
-    if (!options.output.plot.empty()) {
-        std::vector<Chart> charts;
-        for (const Run& run : full) {
-            Chart chart{fmt::format("{}: mean ratio by level, motion '{}', {} nodes", first.name, run.motion, run.nodes), "BVH level (0: root)", "bound radius / true radius", false, true, {}};
-            for (const std::string& name : names) {
-                Series series{name, {}, {}};
-                for (std::size_t l = 0; l < run.levels.at(name).size(); ++l)
-                    if (run.levels.at(name)[l].measured) {
-                        series.x.push_back(static_cast<double>(l));
-                        series.y.push_back(run.levels.at(name)[l].mean());
-                    }
-                chart.series.push_back(std::move(series));
-            }
-            charts.push_back(std::move(chart));
-        }
-        if (!sweep.empty()) {
-            Chart chart{fmt::format("{}: mean ratio of the root, motion '{}'", first.name, motions[0]), "simulation nodes n", "bound radius / true radius", true, true, {}};
-            for (const std::string& name : names) {
-                Series series{name, {}, {}};
-                for (const Run& run : sweep) {
-                    series.x.push_back(static_cast<double>(run.nodes));
-                    series.y.push_back(run.levels.at(name)[0].mean());
-                }
-                chart.series.push_back(std::move(series));
-            }
-            charts.push_back(std::move(chart));
-        }
-        plot(charts, options.output.plot);
-    }
-    if (!options.output.json && !options.output.csv) {
+    output.add_all(records);
+    output.finish();
+    if (!options.output.records_only()) {
         for (const std::string& line : first.report)
             fmt::print("{}\n", line);
         fmt::print("bounds in {}, AABBs, at most {} per leaf; radius: half diagonal\n\n", name_of(options.precision), counted(options.leaf, "triangle", "triangles"));

@@ -78,7 +78,7 @@ void explain_last_frame(const Input& input, const Bvh& bvh, const VerifyOptions&
         return exact::OneBound{input.surface, bvh, maps, options.methods, options.kdop, bv, direction,
                                supports[bv * static_cast<std::size_t>(options.kdop) + static_cast<std::size_t>(direction)]};
     };
-    for (int d = 0; options.json && d < options.kdop; ++d)
+    for (int d = 0; (options.output.json || !options.output.report.empty()) && d < options.kdop; ++d)
         if (const exact::OneBound root = place(0, d); std::isfinite(root.bound))
             totals.root.push_back({d, root.bound, exact::exact_loss(root)});
     if (options.vipr.empty())
@@ -148,6 +148,8 @@ int verify(const VerifyOptions& given)
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
     if (!options.vipr.empty() && (!options.methods.within(box_methods) || options.rest_shape == RestShape::obb))
         throw InputError("--vipr needs methods that bound over weights and the BV's own box: convex, corners, eq12, limited");
+    const Provenance from = provenance(threads, options.input.seed);
+    RecordOutput output(options.output, from);
     const Inputs inputs = load_inputs(options.input);
     if (inputs.bodies.size() > 1 && (!options.certificate.empty() || !options.vipr.empty()))
         throw InputError("--certificate and --vipr are of one body; --body chooses it");
@@ -171,11 +173,12 @@ int verify(const VerifyOptions& given)
     finish(totals);
     totals.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
-    const Provenance from = provenance(threads, options.input.seed);
-    if (lazy)
-        (options.json ? print_lazy_json : print_lazy_table)(inputs, options, totals, *lazy, from);
-    else
-        (options.json ? print_json : print_table)(inputs, options, totals, from);
+    output.add_all(lazy ? lazy_records_of(inputs, options, totals, *lazy) : records_of(inputs, options, totals));
+    output.finish();
+    if (!options.output.records_only() && lazy)
+        print_lazy_table(inputs, options, totals, *lazy, from);
+    else if (!options.output.records_only())
+        print_table(inputs, options, totals, from);
     if (totals.violated || totals.ladder.broken)
         return 1;
     if (totals.frames < totals.frames_wanted) {

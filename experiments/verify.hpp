@@ -2,6 +2,7 @@
 #pragma once
 
 #include "experiments/input.hpp"
+#include "experiments/report/record_output.hpp"
 #include "toolkit/hierarchy/refit.hpp"
 
 namespace cinch {
@@ -30,7 +31,7 @@ struct VerifyOptions {
     VerifiedUpdate update = VerifiedUpdate::refit;
     std::size_t leaf = 0; ///< most triangles; 0: 1 for refit, else 16
     int threads = 0;      ///< 0: as many as the machine has
-    bool json = false;
+    OutputOptions output;
     std::string certificate; ///< file to write; empty: none
     std::string vipr;        ///< folder for single bounds as VIPR files; empty: none
     bool volume = false;     ///< exact volume ratios too

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "experiments/report/number.hpp"
 #include "experiments/report/table.hpp"
@@ -46,36 +45,35 @@ void print_lazy_table(const Inputs& input, const VerifyOptions& options, const V
     fmt::print("{}\n{}\n", duration(totals.seconds), describe(from));
 }
 
-void print_lazy_json(const Inputs& input, const VerifyOptions& options, const VerifyTotals& totals, const LazyTotals& lazy, const Provenance& from)
+std::vector<nlohmann::ordered_json> lazy_records_of(const Inputs& input, const VerifyOptions& options, const VerifyTotals& totals, const LazyTotals& lazy)
 {
-    using nlohmann::json;
+    using json = nlohmann::ordered_json;
+    std::vector<json> records;
     auto base = [&] {
         return json{{"experiment", "verify"}, {"input", input.name}, {"update", name_of(options.update)}, {"method", cinch::name_of(options.methods)},
                     {"precision", cinch::name_of(options.precision)}, {"kdop", options.kdop}, {"rest", options.rest_shape == RestShape::obb ? "obb" : "aabb"}};
     };
-    auto print = [](const json& record) { fmt::print("{}\n", record.dump(-1, ' ', false, json::error_handler_t::replace)); };
     for (std::size_t i = 0; i < totals.levels.size(); ++i) {
         const LevelTotals& level = totals.levels[i];
         json record = base();
         record.update({{"level", i}, {"bvs", level.bvs}, {"proven", level.proven}, {"violated", level.violated},
                        {"mean_ratio", level.measured ? json(share(level.ratio_sum, level.measured)) : json()},
                        {"max_ratio", level.measured ? json(level.ratio_max) : json()}});
-        print(record);
+        records.push_back(std::move(record));
     }
     for (const auto& example : totals.examples) {
         json record = base();
         record.update({{"frame", example.frame}, {"level", example.level}, {"bv", example.violation.bv}, {"direction", example.violation.direction},
                        {"violated_statement", exact::name_of(example.violation.statement)}, {"detail", example.violation.detail}});
-        print(record);
+        records.push_back(std::move(record));
     }
     json record = base();
     record.update({{"frames", totals.frames / input.bodies.size()}, {"leaf_triangles", options.leaf}, {"bodies", input.bodies.size()}, {"pairs", lazy.pairs},
                    {"by_methods", lazy.by_methods}, {"merged", lazy.merged}, {"from_vertices", lazy.from_vertices}, {"left", lazy.left},
                    {"bounds", totals.bounds}, {"proven", totals.proven}, {"violated", totals.violated}, {"infinite", totals.infinite},
-                   {"seconds", totals.seconds}, {"complete", totals.frames == totals.frames_wanted}, {"load_report", input.report},
-                   {"version", from.version}, {"commit", from.commit}, {"compiler", from.compiler}, {"flags", from.flags},
-                   {"cpu", from.cpu}, {"simd_target", from.simd}, {"threads", from.threads}, {"seed", from.seed}});
-    print(record);
+                   {"seconds", totals.seconds}, {"complete", totals.frames == totals.frames_wanted}, {"load_report", input.report}});
+    records.push_back(std::move(record));
+    return records;
 }
 
 } // namespace cinch

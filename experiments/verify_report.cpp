@@ -2,7 +2,6 @@
 #include "experiments/verify_report.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "experiments/report/number.hpp"
 #include "experiments/report/table.hpp"
@@ -96,14 +95,14 @@ void print_table(const Inputs& input, const VerifyOptions& options, const Verify
     fmt::print("{}, filter hit rate {:.4f}\n{}\n", duration(totals.seconds), rate(totals.decided_by_filter, totals.bounds), describe(from));
 }
 
-void print_json(const Inputs& input, const VerifyOptions& options, const VerifyTotals& totals, const Provenance& from)
+std::vector<nlohmann::ordered_json> records_of(const Inputs& input, const VerifyOptions& options, const VerifyTotals& totals)
 {
-    using nlohmann::json;
+    using json = nlohmann::ordered_json;
+    std::vector<json> records;
     auto base = [&] {
         return json{{"experiment", "verify"}, {"input", input.name}, {"method", name_of(options.methods)}, {"precision", name_of(options.precision)},
                     {"kdop", options.kdop}, {"rest", options.rest_shape == RestShape::obb ? "obb" : "aabb"}};
     };
-    auto print = [](const json& record) { fmt::print("{}\n", record.dump(-1, ' ', false, json::error_handler_t::replace)); };
     for (std::size_t i = 0; i < totals.levels.size(); ++i) {
         const LevelTotals& level = totals.levels[i];
         const LevelMeans mean = means(level);
@@ -118,20 +117,20 @@ void print_json(const Inputs& input, const VerifyOptions& options, const VerifyT
                            {"mean_volume_ratio", v.measured ? json(v.ratio_sum / static_cast<double>(v.measured)) : json()},
                            {"max_volume_ratio", v.measured ? json(v.ratio_max) : json()}, {"redundant_planes", v.redundant}});
         }
-        print(record);
+        records.push_back(std::move(record));
     }
     for (const auto& example : totals.examples) {
         json record = base();
         record.update({{"frame", example.frame}, {"level", example.level}, {"bv", example.violation.bv}, {"direction", example.violation.direction},
                        {"violated_statement", exact::name_of(example.violation.statement)}, {"detail", example.violation.detail}});
-        print(record);
+        records.push_back(std::move(record));
     }
     for (const auto& root : totals.root) {
         json record = base();
         record.update({{"attribution", "exact"}, {"frame", totals.frames - 1}, {"bv", 0}, {"direction", root.direction}, {"bound", fmt::format("{:a}", root.bound)},
                        {"box_loss", root.loss.box}, {"interval_loss", root.loss.interval}, {"corner_loss", root.loss.corner},
                        {"rounding_loss", root.loss.rounding}, {"total_loss", root.loss.total}});
-        print(record);
+        records.push_back(std::move(record));
     }
     json record = base();
     std::size_t vertices = 0, triangles = 0, nodes = 0;
@@ -146,10 +145,9 @@ void print_json(const Inputs& input, const VerifyOptions& options, const VerifyT
                    {"ladder_compared", totals.ladder.compared}, {"ladder_broken", totals.ladder.broken},
                    {"filter_hit_rate", rate(totals.decided_by_filter, totals.bounds)}, {"seconds", totals.seconds},
                    {"packed_bytes", totals.packed_bytes}, {"rest_bytes", totals.rest_bytes},
-                   {"complete", totals.frames == totals.frames_wanted}, {"load_report", input.report},
-                   {"version", from.version}, {"commit", from.commit}, {"compiler", from.compiler}, {"flags", from.flags},
-                   {"cpu", from.cpu}, {"simd_target", from.simd}, {"threads", from.threads}, {"seed", from.seed}});
-    print(record);
+                   {"complete", totals.frames == totals.frames_wanted}, {"load_report", input.report}});
+    records.push_back(std::move(record));
+    return records;
 }
 
 } // namespace cinch

@@ -72,27 +72,22 @@ Json record(const SceneResult& r, const Measured& m, bool cold)
                     {"mean_triangle_tests", mean(c.triangle_tests)}, {"share_double", static_cast<double>(c.in_double) / tests},
                     {"share_exact", static_cast<double>(c.in_exact) / tests}});
     }
+    auto rounded = [](const std::vector<double>& all) { // six digits say it
+        Json list = Json::array();
+        for (const double x : all)
+            list.push_back(std::stod(fmt::format("{:.6g}", x)));
+        return list;
+    };
+    out.update({{"pairs_of_frame", rounded(m.pairs_of_frame)}, {"total_ms_of_frame", rounded(m.total_of_frame)}});
     return out;
-}
-
-void draw(const std::vector<SceneResult>& results, const std::string& file)
-{
-    std::vector<Chart> charts;
-    for (const SceneResult& r : results) {
-        Chart chart{r.scene, "intersecting triangle pairs in the frame", "ms", false, true, {}};
-        for (const Measured& m : r.backends)
-            if (m.total_of_frame.size() == r.backends[0].pairs_of_frame.size())
-                chart.series.push_back({m.backend, r.backends[0].pairs_of_frame, m.total_of_frame, true});
-        charts.push_back(std::move(chart));
-    }
-    plot(charts, file);
 }
 
 } // namespace
 
 int collide(const CollideOptions& options)
 {
-    require_plottable(options.output.plot);
+    const Provenance from = provenance(options.threads, options.seed);
+    RecordOutput output(options.output, from);
     const std::vector<BackendKind> kinds = chosen_backends(options.backends);
     std::vector<std::string> names = options.scenes;
     const bool all = names.empty();
@@ -123,7 +118,6 @@ int collide(const CollideOptions& options)
         fmt::print(stderr, "cinch: interrupted before anything was measured\n");
         return 130;
     }
-    const Provenance from = provenance(options.threads, options.seed);
     std::vector<Json> records;
     bool different = false;
     for (const SceneResult& r : results)
@@ -135,10 +129,9 @@ int collide(const CollideOptions& options)
         records.push_back({{"experiment", "collide"}, {"figure", f.what}, {"measured", f.measured}, {"target", f.target}, {"reached", f.reached}});
     for (const Slope& s : slopes_of(results))
         records.push_back({{"experiment", "collide"}, {"slope", s.what}, {"exponent", s.exponent}});
-    print_records(records, options.output, from);
-    if (!options.output.plot.empty())
-        draw(results, options.output.plot);
-    if (!options.output.json && !options.output.csv) {
+    output.add_all(records);
+    output.finish();
+    if (!options.output.records_only()) {
         print_tables(results, options.cold);
         fmt::print("{}\n", describe(from));
     }

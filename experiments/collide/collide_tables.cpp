@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "experiments/report/number.hpp"
+#include "experiments/report/paper_figures.hpp"
 #include "experiments/report/table.hpp"
 
 namespace cinch {
@@ -17,22 +18,14 @@ using Rows = std::vector<std::vector<std::string>>;
 std::string ms(double x) { return x < 10 ? fmt::format("{:.3f}", x) : x < 100 ? fmt::format("{:.1f}", x) : fmt::format("{:.0f}", x); }
 std::string times(double x) { return x < 10 ? fmt::format("{:.2f}", x) : fmt::format("{:.0f}", x); }
 
-// The paper's Tables 3 and 4, ms: totals of full bottom-up AABBs and of spatial hashing, and refit, query and gain of both its variants.
-struct Paper {
-    double refit, query, load, hash_query; // Table 3
-    double aabb_refit, aabb_query, aabb_gain, obb_refit, obb_query, obb_gain; // Table 4
-};
-constexpr Paper paper[8] = {
-    {37.1, 2.12, 28.29, 41.63, 1.83, 5.72, 5.2, 2.82, 7.82, 3.7},      {37.1, 2.12, 28.29, 41.63, 2.36, 5.60, 4.9, 4.05, 8.48, 3.1},
-    {575.7, 5.89, 479.6, 1264.5, 4.54, 16.6, 27.5, 6.85, 21.89, 20.3}, {575.7, 5.89, 479.6, 1264.5, 5.77, 18.7, 23.7, 8.48, 25.37, 17.2},
-    {37.9, 2.48, 28.91, 44.32, 3.38, 10.0, 3.0, 3.89, 10.27, 2.9},     {37.9, 2.48, 28.91, 44.32, 3.26, 9.28, 3.2, 5.41, 13.00, 2.2},
-    {569.7, 8.84, 484.2, 1430.5, 6.87, 24.5, 18.4, 7.91, 26.98, 16.6}, {569.7, 8.84, 484.2, 1430.5, 8.23, 29.3, 15.4, 11.39, 38.6, 11.6}};
-
 // Place in Table 2, 1 to 8; 0 for other scenes.
 std::size_t ring(const std::string& scene)
 {
     return scene.size() == 12 && scene.starts_with("santa-ring-") && scene.back() >= '1' && scene.back() <= '8' ? static_cast<std::size_t>(scene.back() - '0') : 0;
 }
+
+// Of the paper's Table 3, which has one for two scenes: they differ in simulation nodes only.
+std::string row_of_table_3(std::size_t ring) { return fmt::format("{}, {}", (ring - 1) / 2 * 2 + 1, (ring - 1) / 2 * 2 + 2); }
 
 void print_scenes(const std::vector<SceneResult>& results)
 {
@@ -55,8 +48,10 @@ void print_table_3(const std::vector<SceneResult>& results)
             for (const double x : m ? std::vector{m->evaluate_ms + m->update_ms, m->query_ms, m->total_ms} : std::vector<double>(3, NAN))
                 row.push_back(std::isnan(x) ? "-" : ms(x));
         const std::size_t n = ring(r.scene);
-        row.push_back(n ? fmt::format("{:.0f}", paper[n - 1].refit + paper[n - 1].query) : r.scene == "fishes" ? "418" : "-");
-        row.push_back(n ? fmt::format("{:.0f}", paper[n - 1].load + paper[n - 1].hash_query) : "-");
+        auto paper = [&](const char* column) { return fmt::format("{:.0f}", paper_figure("Table 3", row_of_table_3(n), column).value); };
+        const double fishes = paper_figure("Fig. 7", "fishes", "full refit").value + paper_figure("Fig. 7", "fishes", "full query").value;
+        row.push_back(n ? paper("total") : r.scene == "fishes" ? fmt::format("{:.0f}", fishes) : "-");
+        row.push_back(n ? paper("hash total") : "-");
         rows.push_back(row);
     }
     if (rows.empty())
@@ -75,7 +70,8 @@ void print_table_4(const std::vector<SceneResult>& results)
         std::vector<std::string> row{r.scene};
         const std::size_t n = ring(r.scene);
         for (const Measured* m : {aabb, obb}) {
-            const double gain = n ? (m == aabb ? paper[n - 1].aabb_gain : paper[n - 1].obb_gain) : r.scene == "fishes" && m == aabb ? 12 : 0;
+            const double gain = n ? paper_figure("Table 4", std::to_string(n), m == aabb ? "gain" : "OBB gain").value
+                                  : r.scene == "fishes" && m == aabb ? paper_figure("Fig. 7", "fishes", "gain").value : 0;
             row.push_back(m ? ms(m->update_ms) : "-");
             row.push_back(m ? ms(m->query_ms) : "-");
             row.push_back(m ? ms(m->total_ms) : "-");

@@ -146,7 +146,8 @@ void print_tables(const Input& input, const CostSample& sample, const std::vecto
 int cost(const CostOptions& options)
 {
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-    require_plottable(options.output.plot);
+    const Provenance from = provenance(1, options.input.seed);
+    RecordOutput output(options.output, from);
     catch_interrupt();
     const Input input = load_input(options.input);
     std::vector<DualGap> gaps = dual_gaps(input, options.leaf);
@@ -172,7 +173,6 @@ int cost(const CostOptions& options)
             progress.done(i + 1);
         }
     }
-    const Provenance from = provenance(1, options.input.seed);
     std::vector<nlohmann::ordered_json> records;
     auto number = [](double x) { return std::isfinite(x) ? nlohmann::ordered_json(x) : nlohmann::ordered_json(); };
     for (const Row& r : rows)
@@ -185,20 +185,9 @@ int cost(const CostOptions& options)
                                {"passes", passes}, {"gap_percent", gap.gap[passes]}, {"bounds", gap.bounds}});
     for (const Figure& f : figures_of(gaps))
         records.push_back({{"experiment", "cost"}, {"figure", f.what}, {"measured", f.measured}, {"target", f.target}, {"reached", f.reached}});
-    print_records(records, options.output, from);
-    if (!options.output.plot.empty() && !rows.empty()) {
-        Chart chart{fmt::format("{}: what accuracy costs, {}-DOP", input.name, rows[0].kdop), "nanoseconds per BV", "bound radius / true radius", true, true, {}};
-        for (const Row& r : rows)
-            if (r.kdop == rows[0].kdop) {
-                auto series = std::find_if(chart.series.begin(), chart.series.end(), [&](const Series& s) { return s.name == r.arithmetic; });
-                if (series == chart.series.end())
-                    series = chart.series.insert(series, Series{r.arithmetic, {}, {}, true});
-                series->x.push_back(r.ns);
-                series->y.push_back(r.looseness);
-            }
-        plot({chart}, options.output.plot);
-    }
-    if (!options.output.json && !options.output.csv) {
+    output.add_all(records);
+    output.finish();
+    if (!options.output.records_only()) {
         print_tables(input, sample, rows, gaps);
         print(figures_of(gaps));
         fmt::print("\n{}\n", describe(from));

@@ -37,7 +37,8 @@ struct State {
 class Session {
 public:
     explicit Session(const FuzzOptions& options)
-        : options_(options), threads_(options.threads > 0 ? options.threads : tbb::info::default_concurrency()), terminal_(isatty(STDERR_FILENO) == 1)
+        : options_(options), threads_(options.threads > 0 ? options.threads : tbb::info::default_concurrency()), terminal_(isatty(STDERR_FILENO) == 1),
+          output_(options.output, provenance(threads_, options.seed))
     {
         load_state();
     }
@@ -106,13 +107,10 @@ private:
         }
         if (terminal_)
             fmt::print(stderr, "\r\x1b[K");
-        if (options_.json) {
-            json record = json::parse(text);
-            record["experiment"] = "fuzz";
-            record["index"] = of_shard * options_.shards + options_.shard;
-            record["saved"] = place;
-            fmt::print("{}\n", record.dump());
-        } else {
+        nlohmann::ordered_json record{{"experiment", "fuzz"}, {"index", of_shard * options_.shards + options_.shard}, {"saved", place}};
+        record.update(nlohmann::ordered_json::parse(text));
+        output_.add(record);
+        if (!options_.output.records_only()) {
             fmt::print("violated: case {} of family {}, shrunk to n = {}:\n  {}\n  {}\n", of_shard * options_.shards + options_.shard, found.family,
                        smallest.nodes(), find_fault(smallest, options_.defect), place.empty() ? text : place);
         }
@@ -166,18 +164,15 @@ private:
         std::fflush(stderr);
     }
 
-    void summarise() const
+    void summarise()
     {
         const Provenance from = provenance(threads_, options_.seed);
         const double seconds = state_.seconds + elapsed();
-        if (options_.json) {
-            fmt::print("{}\n", json{{"experiment", "fuzz"}, {"seed", options_.seed}, {"cases", state_.next}, {"violations", state_.violations},
-                                    {"seconds", seconds}, {"family", options_.family}, {"shard", options_.shard}, {"shards", options_.shards},
-                                    {"version", from.version}, {"commit", from.commit}, {"compiler", from.compiler}, {"flags", from.flags},
-                                    {"cpu", from.cpu}, {"simd_target", from.simd}, {"threads", from.threads}}
-                                   .dump());
+        output_.add({{"experiment", "fuzz"}, {"cases", state_.next}, {"violations", state_.violations}, {"seconds", seconds}, {"family", options_.family},
+                     {"shard", options_.shard}, {"shards", options_.shards}});
+        output_.finish();
+        if (options_.output.records_only())
             return;
-        }
         fmt::print("{} cases, {} violations\n{}, {} cases per second\n{}\n", grouped(state_.next), grouped(state_.violations), duration(seconds),
                    grouped(static_cast<std::size_t>(static_cast<double>(state_.next) / std::max(seconds, 1e-3))), describe(from));
     }
@@ -185,6 +180,7 @@ private:
     const FuzzOptions& options_;
     int threads_;
     bool terminal_;
+    RecordOutput output_;
     State state_;
     std::uint64_t resumed_from_ = 0;
     std::set<std::string> shrunk_;

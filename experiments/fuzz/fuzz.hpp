@@ -5,6 +5,7 @@
 #include <string>
 
 #include "experiments/fuzz/fuzz_case.hpp"
+#include "experiments/report/record_output.hpp"
 
 namespace cinch {
 
@@ -17,7 +18,7 @@ struct FuzzOptions {
     std::string resume;      ///< state file; empty: none
     std::string corpus;      ///< where shrunk failures go
     int threads = 0;
-    bool json = false;
+    OutputOptions output;
     Defect defect = Defect::none;
 };
 

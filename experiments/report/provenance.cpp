@@ -29,11 +29,37 @@ std::string compiler_name()
 #endif
 }
 
+// An argument as a shell takes it.
+std::string shell_word(const std::string& text)
+{
+    if (!text.empty() && text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%") == std::string::npos)
+        return text;
+    std::string out = "'";
+    for (const char c : text)
+        out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return out + "'";
+}
+
+std::string command_line()
+{
+    std::ifstream in("/proc/self/cmdline");
+    std::string out, word;
+    while (std::getline(in, word, '\0'))
+        out += out.empty() ? word.substr(word.find_last_of('/') + 1) : " " + shell_word(word);
+    return out;
+}
+
 } // namespace
+
+nlohmann::ordered_json to_json(const Provenance& p)
+{
+    return {{"command", p.command}, {"version", p.version}, {"commit", p.commit}, {"compiler", p.compiler}, {"flags", p.flags},
+            {"cpu", p.cpu}, {"simd_target", p.simd}, {"threads", p.threads}, {"seed", p.seed}};
+}
 
 Provenance provenance(int threads, std::uint64_t seed)
 {
-    return {CINCH_VERSION, CINCH_COMMIT, compiler_name(), CINCH_FLAGS, cpu_name(), kernel_target(), threads, seed};
+    return {command_line(), CINCH_VERSION, CINCH_COMMIT, compiler_name(), CINCH_FLAGS, cpu_name(), kernel_target(), threads, seed};
 }
 
 std::string describe(const Provenance& p)

@@ -3,48 +3,37 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
-#include <filesystem>
 #include <fstream>
 
 #include <fmt/format.h>
 
+#include "experiments/report/chart.hpp"
+#include "experiments/report/page/charts.hpp"
+#include "experiments/report/page/page.hpp"
 #include "toolkit/surface/input_error.hpp"
 
 namespace cinch {
 namespace {
 
-std::string csv_field(const nlohmann::ordered_json& value)
+using Json = nlohmann::ordered_json;
+
+std::string dumped(const Json& record) { return record.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+std::string csv_field(const Json& value)
 {
     if (value.is_null())
         return "";
-    if (!value.is_string())
+    if (value.is_number() || value.is_boolean())
         return value.dump();
     std::string out = "\"";
-    for (const char c : value.get<std::string>())
+    for (const char c : value.is_string() ? value.get<std::string>() : dumped(value))
         out += c == '"' ? std::string("\"\"") : std::string(1, c);
     return out + '"';
 }
 
-std::string quoted(const std::string& text) // for gnuplot, single quotes
+void print_csv(const std::vector<Json>& records)
 {
-    std::string out = "'";
-    for (const char c : text)
-        out += c == '\'' ? std::string("''") : std::string(1, c);
-    return out + "'";
-}
-
-} // namespace
-
-void print_records(const std::vector<nlohmann::ordered_json>& records, const OutputOptions& options, const Provenance& from)
-{
-    if (options.json)
-        for (nlohmann::ordered_json record : records) {
-            record.update({{"version", from.version}, {"commit", from.commit}, {"compiler", from.compiler}, {"flags", from.flags}, {"cpu", from.cpu},
-                           {"simd_target", from.simd}, {"threads", from.threads}, {"seed", from.seed}});
-            fmt::print("{}\n", record.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
-        }
-    if (!options.csv || records.empty())
+    if (records.empty())
         return;
     std::vector<std::string> names;
     for (const auto& record : records) // not every record has every field
@@ -60,40 +49,79 @@ void print_records(const std::vector<nlohmann::ordered_json>& records, const Out
     }
 }
 
-void require_plottable(const std::string& file)
+void write_file(const std::string& file, const std::string& text)
 {
-    if (file.empty())
-        return;
-    if (std::system("command -v gnuplot >/dev/null 2>&1") != 0)
-        throw InputError("--plot needs gnuplot; on Debian: apt-get install gnuplot-nox");
-    if (!std::ofstream(file, std::ios::app))
+    std::ofstream out(file, std::ios::binary);
+    out << text;
+    if (!out.flush())
         throw InputError::in_file(file, "cannot be written");
 }
 
-void plot(const std::vector<Chart>& charts, const std::string& file)
+// The records as if they had been read from a file named after their experiment.
+Results results_of(const std::vector<Json>& records, const Json& from)
 {
-    std::string script = fmt::format("set terminal svg size 900,{} dynamic enhanced background '#ffffff' font 'sans-serif,14'\nset output {}\n"
-                                     "set multiplot layout {},1\nset grid lc rgb '#d0d0d0'\nset key outside right\n",
-                                     480 * charts.size(), quoted(file), charts.size());
-    for (const Chart& chart : charts) {
-        script += fmt::format("set title {} noenhanced\nset xlabel {} noenhanced\nset ylabel {} noenhanced\nunset logscale\n{}{}set autoscale\nplot ", quoted(chart.title),
-                              quoted(chart.x_label), quoted(chart.y_label), chart.log_x ? "set logscale x\n" : "", chart.log_y ? "set logscale y\n" : "");
-        for (std::size_t i = 0; i < chart.series.size(); ++i)
-            script += fmt::format("{}'-' with {} lw 2 pt {} title {} noenhanced", i ? ", " : "", chart.series[i].points_only ? "points" : "linespoints", 4 + i % 10, quoted(chart.series[i].name));
-        script += "\n";
-        for (const Series& series : chart.series) {
-            for (std::size_t i = 0; i < series.x.size(); ++i)
-                script += fmt::format("{:.9g} {:.9g}\n", series.x[i], series.y[i]);
-            script += "e\n";
-        }
+    Results results;
+    std::size_t line = 0;
+    for (Json record : records) {
+        record.update(from);
+        const std::string text = dumped(record);
+        const std::string name = record.value("experiment", "records");
+        results.add({{name, ++line}, std::move(record), text});
     }
-    script += "unset multiplot\n";
-    FILE* gnuplot = popen("gnuplot 2>/dev/null", "w");
-    if (!gnuplot)
-        throw InputError("--plot: gnuplot could not be run");
-    const bool written = std::fwrite(script.data(), 1, script.size(), gnuplot) == script.size();
-    if (pclose(gnuplot) != 0 || !written || !std::filesystem::exists(file))
-        throw InputError::in_file(file, "gnuplot could not draw it");
+    return results;
+}
+
+} // namespace
+
+std::string json_line(Json record, const Provenance& from)
+{
+    record.update(to_json(from));
+    return dumped(record);
+}
+
+RecordOutput::RecordOutput(const OutputOptions& options, const Provenance& from) : options_(options), from_(to_json(from))
+{
+    for (const auto& [file, option] : {std::pair(options.plot, "--plot"), std::pair(options.report, "--report")})
+        if (!file.empty()) {
+            require_gnuplot(option);
+            if (!std::ofstream(file, std::ios::app))
+                throw InputError::in_file(file, "cannot be written");
+        }
+}
+
+void RecordOutput::add(const Json& record)
+{
+    if (options_.json) {
+        Json line = record;
+        line.update(from_);
+        fmt::print("{}\n", dumped(line));
+    }
+    if (options_.csv || !options_.plot.empty() || !options_.report.empty())
+        records_.push_back(record);
+}
+
+void RecordOutput::add_all(const std::vector<Json>& records)
+{
+    for (const Json& record : records)
+        add(record);
+}
+
+void RecordOutput::finish()
+{
+    if (options_.csv)
+        print_csv(records_);
+    std::fflush(stdout);
+    if (options_.plot.empty() && options_.report.empty())
+        return;
+    const Results results = results_of(records_, from_);
+    if (!options_.plot.empty()) {
+        std::vector<Chart> charts;
+        for (const html::ChartFigure& chart : charts_of(results))
+            charts.push_back(chart.chart);
+        write_file(options_.plot, svg(charts));
+    }
+    if (!options_.report.empty())
+        write_file(options_.report, command_page(results));
 }
 
 } // namespace cinch

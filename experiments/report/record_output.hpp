@@ -10,29 +10,32 @@
 
 namespace cinch {
 
-/// What the measuring commands print besides their table.
+/// What commands put out besides what they print for people.
 struct OutputOptions {
     bool json = false, csv = false; ///< records on standard output and nothing else
     std::string plot;               ///< SVG file to draw; empty: none
+    std::string report;             ///< HTML page to write; empty: none
+
+    bool records_only() const { return json || csv; }
 };
 
-/// Records (JSON objects with the same fields) as JSON Lines, the provenance in each, or as CSV with a header.
-void print_records(const std::vector<nlohmann::ordered_json>& records, const OutputOptions& options, const Provenance& from);
+/// The records of a command: JSON objects, each with the provenance added. As JSON Lines they are printed as they come; CSV, charts and
+/// the page follow when all are there.
+class RecordOutput {
+public:
+    /// To be made before measuring: throws InputError if gnuplot is missing, or a file cannot be written.
+    RecordOutput(const OutputOptions& options, const Provenance& from);
+    void add(const nlohmann::ordered_json& record);
+    void add_all(const std::vector<nlohmann::ordered_json>& records);
+    void finish();
 
-/// A line of a chart.
-struct Series {
-    std::string name;
-    std::vector<double> x, y;
-    bool points_only = false;
+private:
+    OutputOptions options_;
+    nlohmann::ordered_json from_;
+    std::vector<nlohmann::ordered_json> records_;
 };
-struct Chart {
-    std::string title, x_label, y_label;
-    bool log_x = false, log_y = false;
-    std::vector<Series> series;
-};
-/// To be called before measuring: throws InputError if gnuplot is missing or the file cannot be written. Nothing for an empty name.
-void require_plottable(const std::string& file);
-/// Draws charts below each other as one SVG file, by gnuplot. Throws InputError where that fails.
-void plot(const std::vector<Chart>& charts, const std::string& file);
+
+/// A record of this provenance, as one line of text.
+std::string json_line(nlohmann::ordered_json record, const Provenance& from);
 
 } // namespace cinch

@@ -74,7 +74,8 @@ void mark_pareto(std::vector<Row>& rows)
 int cost_simulation(const CostSimulationOptions& options)
 {
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-    require_plottable(options.output.plot);
+    const Provenance from = provenance(1, 0);
+    RecordOutput output(options.output, from);
     FoundScene found = find_scene(options.scene, {});
     Scene& scene = found.scene;
     scene.duration_s = std::min(scene.duration_s, options.duration_s);
@@ -130,38 +131,23 @@ int cost_simulation(const CostSimulationOptions& options)
         }
     }
     mark_pareto(rows);
-    const bool whole_run = rows.size() == std::size(energies) * (std::size(implicit_steps) + std::size(explicit_shares));
     StepFigures steps;
     if (!interrupted()) {
         Progress progress("measuring steps", 0);
         steps = measure_steps(options.seconds);
     }
 
-    const Provenance from = provenance(1, 0);
     std::vector<nlohmann::ordered_json> records;
     for (const Row& r : rows)
         records.push_back({{"experiment", "cost"}, {"simulation", options.scene}, {"energy", r.energy}, {"integrator", r.integrator}, {"step_s", r.step_s}, {"steps", r.steps},
                            {"error", r.error}, {"seconds_per_simulated_second", r.seconds_per_second}, {"pareto", r.pareto}, {"failure", r.failure}});
-    if (options.output.json)
+    if (options.output.json || !options.output.report.empty())
         for (const StepFigures::Row& r : steps.rows)
             records.push_back({{"experiment", "cost"}, {"substep", "brain"}, {"nodes", r.nodes}, {"neighbours", r.neighbours}, {"us_per_substep", r.step_us},
                                {"plain_us_per_substep", r.plain_us}, {"difference_m", r.off}});
-    print_records(records, options.output, from);
-    if (!options.output.plot.empty() && whole_run) {
-        Chart chart{"Error against time, " + options.scene, "seconds per simulated second", "relative error", true, true, {}};
-        for (const auto& [name, model] : energies)
-            for (const char* integrator : {"implicit", "explicit"}) {
-                Series series{fmt::format("{}, {}", name, integrator), {}, {}};
-                for (const Row& r : rows)
-                    if (r.energy == name && r.integrator == integrator) {
-                        series.x.push_back(r.seconds_per_second);
-                        series.y.push_back(r.error);
-                    }
-                chart.series.push_back(std::move(series));
-            }
-        plot({chart}, options.output.plot);
-    }
-    if (!options.output.json && !options.output.csv) {
+    output.add_all(records);
+    output.finish();
+    if (!options.output.records_only()) {
         fmt::print("{}: {:.3g} s simulated, one core\n\n", options.scene, scene.duration_s);
         std::vector<std::vector<std::string>> cells;
         for (const Row& r : rows)

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "experiments/shipped.hpp"
 #include "toolkit/simulate/frame_file.hpp"
 #include "toolkit/surface/input_error.hpp"
 #include "toolkit/surface/read_mesh.hpp"
@@ -15,13 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Beside an installed program, or in the source that it was built from.
-fs::path scene_folder()
-{
-    std::error_code error;
-    const fs::path installed = fs::read_symlink("/proc/self/exe", error).parent_path().parent_path() / "share/cinch/scenes";
-    return !error && fs::is_directory(installed, error) ? installed : fs::path(CINCH_SCENES);
-}
+fs::path scene_folder() { return shipped_folder("scenes"); }
 
 } // namespace
 

@@ -79,7 +79,7 @@ Json energies_of(const Simulation& simulation, const std::string& scene, std::si
             {"substeps", r.substeps}, {"iterations", r.iterations}, {"products", r.products}, {"residual_m_per_s2", r.residual}, {"kinetic_j", r.kinetic}, {"potential_j", r.potential}};
 }
 
-Result run(const SimulateOptions& options, Simulation& simulation, FrameOutput& output)
+Result run(const SimulateOptions& options, Simulation& simulation, FrameOutput& output, RecordOutput& records)
 {
     Result result;
     result.bodies.resize(simulation.bodies().size());
@@ -114,8 +114,8 @@ Result run(const SimulateOptions& options, Simulation& simulation, FrameOutput& 
             t.last = r;
             result.seconds += r.seconds;
             result.steps += static_cast<std::size_t>(r.substeps);
-            if (options.energies && options.json)
-                fmt::print("{}\n", energies_of(simulation, options.scene, b, r).dump(-1, ' ', false, Json::error_handler_t::replace));
+            if (options.energies)
+                records.add(energies_of(simulation, options.scene, b, r));
         }
         ++result.frames;
         if (result.failure = output.write(simulation); !result.failure.empty())
@@ -130,7 +130,7 @@ Result run(const SimulateOptions& options, Simulation& simulation, FrameOutput& 
 
 double ms_per_step(double seconds, const Result& result) { return result.steps ? 1e3 * seconds / static_cast<double>(result.steps) : 0; }
 
-void print_json(const SimulateOptions& options, const Simulation& simulation, const Result& result, const Provenance& from)
+void add_totals(const SimulateOptions& options, const Simulation& simulation, const Result& result, RecordOutput& records)
 {
     std::vector<std::string> names;
     const auto effects = effect_totals(simulation);
@@ -146,16 +146,13 @@ void print_json(const SimulateOptions& options, const Simulation& simulation, co
         shared += body.simulation.shared_seconds();
         nodes += body.simulation.body().size();
     }
-    fmt::print("{}\n", Json{{"experiment", "simulate"}, {"scene", options.scene}, {"effects", names}, {"bodies", simulation.bodies().size()}, {"nodes", nodes},
+    records.add(Json{{"experiment", "simulate"}, {"scene", options.scene}, {"effects", names}, {"bodies", simulation.bodies().size()}, {"nodes", nodes},
                             {"frames", result.frames}, {"steps", result.steps}, {"ms_per_step", ms_per_step(result.seconds, result)}, {"time_s", simulation.time_s()},
-                            {"failure", result.failure}, {"version", from.version}, {"commit", from.commit}, {"compiler", from.compiler}, {"flags", from.flags},
-                            {"cpu", from.cpu}, {"simd", from.simd}, {"threads", from.threads}, {"seed", from.seed}}
-                           .dump(-1, ' ', false, Json::error_handler_t::replace));
+                            {"failure", result.failure}});
     for (const auto& [name, totals] : effects)
-        fmt::print("{}\n", Json{{"experiment", "simulate"}, {"scene", options.scene}, {"effect", name}, {"bodies", totals.bodies}, {"calls", totals.calls},
-                                {"ms_per_step", ms_per_step(totals.seconds, result)}}
-                               .dump(-1, ' ', false, Json::error_handler_t::replace));
-    fmt::print("{}\n", Json{{"experiment", "simulate"}, {"scene", options.scene}, {"effect", "shared: J and the transport of stresses"}, {"ms_per_step", ms_per_step(shared, result)}}.dump(-1, ' ', false, Json::error_handler_t::replace));
+        records.add(Json{{"experiment", "simulate"}, {"scene", options.scene}, {"effect", name}, {"bodies", totals.bodies}, {"calls", totals.calls},
+                         {"ms_per_step", ms_per_step(totals.seconds, result)}});
+    records.add(Json{{"experiment", "simulate"}, {"scene", options.scene}, {"effect", "shared: J and the transport of stresses"}, {"ms_per_step", ms_per_step(shared, result)}});
 }
 
 void print_tables(const SimulateOptions& options, const Simulation& simulation, const Result& result, const Provenance& from)
@@ -246,13 +243,18 @@ int simulate(const SimulateOptions& options)
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
     if (options.every == 0)
         throw InputError("--every must be at least 1");
+    const Provenance from = provenance(threads, 0);
+    RecordOutput records(options.output, from);
     FoundScene found = find_scene(options.scene, options.changes);
     found.scene.integration.cancelled = interrupted;
     Simulation simulation(found.scene, found.file);
     FrameOutput output(options, found, simulation);
     catch_interrupt();
-    const Result result = run(options, simulation, output);
-    (options.json ? print_json : print_tables)(options, simulation, result, provenance(threads, 0));
+    const Result result = run(options, simulation, output, records);
+    add_totals(options, simulation, result, records);
+    records.finish();
+    if (!options.output.records_only())
+        print_tables(options, simulation, result, from);
     std::fflush(stdout);
     if (!result.failure.empty()) {
         fmt::print(stderr, "cinch: {}\n", result.failure);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "experiments/report/record_output.hpp"
 #include "experiments/simulation/find_scene.hpp"
 
 namespace cinch {
@@ -14,7 +15,8 @@ struct SimulateOptions {
     std::string checkpoint, resume; ///< files; empty: none
     std::size_t every = 10;  ///< frames from checkpoint to checkpoint
     int threads = 0;
-    bool json = false, explain = false, energies = false;
+    bool explain = false, energies = false;
+    OutputOptions output;
 };
 
 /// Runs a scene. Returns the exit status: 0 done, 1 a step could not be solved, 130 interrupted; what is done is kept.

@@ -76,16 +76,13 @@ int stability(const StabilityOptions& options)
     }
     catch_interrupt();
     const Provenance from = provenance(tbb::info::default_concurrency(), 0);
-    std::vector<std::vector<std::string>> rows;
+    RecordOutput output(options.output, from);
     std::size_t run = 0, failed = 0;
     auto report = [&](const std::string& name, const std::string& expected, const std::string& seen, bool pass) {
         failed += !pass;
         ++run;
-        if (options.json)
-            fmt::print("{}\n", nlohmann::ordered_json{{"experiment", "stability"}, {"case", name}, {"expected", expected}, {"observed", seen}, {"pass", pass},
-                                                      {"version", from.version}, {"commit", from.commit}, {"cpu", from.cpu}, {"simd", from.simd}}
-                                   .dump());
-        else
+        output.add({{"experiment", "stability"}, {"case", name}, {"expected", expected}, {"observed", seen}, {"pass", pass}});
+        if (!options.output.records_only())
             fmt::print("{} {}\n     expected: {}\n     observed: {}\n", pass ? "pass" : "FAIL", name, expected, seen);
         std::fflush(stdout);
     };
@@ -109,7 +106,8 @@ int stability(const StabilityOptions& options)
             progress.done(++done);
         }
     }
-    if (!options.json)
+    output.finish();
+    if (!options.output.records_only())
         fmt::print("\n{} of {} rows pass\n{}\n", run - failed, run, describe(from));
     if (failed)
         return 1;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/report/record_output.hpp"
 #include "toolkit/deform/surface.hpp"
 
 namespace cinch {
@@ -47,7 +48,8 @@ StabilityProof prove(const std::vector<StabilityState>& states);
 struct StabilityOptions {
     std::vector<std::string> cases; ///< parts of names; empty: all
     Missing missing = Missing::nothing;
-    bool json = false, list = false;
+    bool list = false;
+    OutputOptions output;
 };
 
 /// Runs the hard cases. Returns the exit status: 0 all pass, 1 one fails, 130 interrupted.

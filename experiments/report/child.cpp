@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/report/child.hpp"
+
+#include <cerrno>
+#include <csignal>
+#include <ctime>
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "experiments/report/interrupt.hpp"
+#include "toolkit/surface/input_error.hpp"
+
+namespace cinch {
+
+int run_child(const std::vector<std::string>& arguments, const std::filesystem::path& output)
+{
+    std::vector<char*> words{const_cast<char*>("cinch")};
+    for (const std::string& argument : arguments)
+        words.push_back(const_cast<char*>(argument.c_str()));
+    words.push_back(nullptr);
+    const int out = open(output.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, 0644), in = open("/dev/null", O_RDONLY | O_CLOEXEC);
+    if (out < 0 || in < 0)
+        throw InputError::in_file(output.string(), "cannot be written");
+    const pid_t parent = getpid(), child = fork();
+    if (child == 0) {
+        prctl(PR_SET_PDEATHSIG, SIGKILL);
+        if (getppid() != parent || dup2(in, STDIN_FILENO) < 0 || dup2(out, STDOUT_FILENO) < 0)
+            _exit(127);
+        execv("/proc/self/exe", words.data());
+        _exit(127);
+    }
+    close(out);
+    close(in);
+    if (child < 0)
+        throw InputError("no process can be started");
+    int status = 0;
+    for (bool told = false;;) {
+        const pid_t ended = waitpid(child, &status, WNOHANG);
+        if (ended == child)
+            break;
+        if (ended < 0 && errno != EINTR)
+            throw InputError("a process was lost");
+        if (interrupted() && !told) { // a terminal has told it already; once more ends it at once, which is as well
+            kill(child, SIGINT);
+            told = true;
+        }
+        const timespec pause{0, 20'000'000};
+        nanosleep(&pause, nullptr);
+    }
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+} // namespace cinch

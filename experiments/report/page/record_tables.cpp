@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/report/page/record_tables.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+#include "experiments/report/number.hpp"
+#include "experiments/report/page/html.hpp"
+#include "experiments/report/provenance.hpp"
+
+namespace cinch {
+namespace {
+
+using html::escaped;
+using Json = nlohmann::ordered_json;
+
+std::string value_cell(const Record& record, const std::string& field)
+{
+    const Json& value = record.fields.at(field);
+    if (value.is_number())
+        return html::cell(Results::number(record, field.c_str()));
+    if (value.is_string())
+        return html::text_cell(value.get<std::string>());
+    return html::text_cell(value.is_null() ? "–" : value.is_boolean() ? (value.get<bool>() ? "yes" : "no") : value.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+/// Fields that a table shows: neither provenance nor series.
+std::vector<std::string> columns_of(const Record& record)
+{
+    static const Json provenance_fields = to_json(Provenance{});
+    std::vector<std::string> columns;
+    for (const auto& [name, value] : record.fields.items())
+        if (!provenance_fields.contains(name) && name != "experiment" && !(value.is_array() && value.size() > 8))
+            columns.push_back(name);
+    return columns;
+}
+
+} // namespace
+
+std::string record_tables(const Results& results)
+{
+    std::vector<std::pair<std::vector<std::string>, std::vector<const Record*>>> groups;
+    for (const Record& record : results.all()) {
+        const auto columns = columns_of(record);
+        auto found = std::find_if(groups.begin(), groups.end(), [&](const auto& group) { return group.first == columns; });
+        if (found == groups.end())
+            found = groups.insert(groups.end(), {columns, {}});
+        found->second.push_back(&record);
+    }
+    std::string body;
+    for (const auto& [columns, records] : groups) {
+        std::vector<std::string> head, rows;
+        for (const std::string& column : columns)
+            head.push_back(html::head_cell(escaped(column)));
+        for (const Record* record : records) {
+            std::vector<std::string> cells;
+            for (const std::string& column : columns)
+                cells.push_back(value_cell(*record, column));
+            rows.push_back(html::row(cells));
+        }
+        body += html::table(counted(records.size(), "record", "records"), {html::row(head)}, {html::block(rows)});
+    }
+    return body.empty() ? "" : html::section("records", "Records", body);
+}
+
+std::string provenance_section(const Results& results)
+{
+    constexpr std::array traced{"command", "commit", "seed", "cpu"};
+    // Lines of one command are together, and most files are of one command.
+    struct Run {
+        const Record* first;
+        std::size_t last;
+        const Record* closing = nullptr;
+    };
+    std::vector<Run> runs;
+    for (const Record& r : results.all()) {
+        if (!runs.empty() && is_closing(r) && runs.back().first->at.file == r.at.file) {
+            runs.back().closing = &r;
+            continue;
+        }
+        const auto same = [&](const Run& run) {
+            return run.first->at.file == r.at.file && std::all_of(traced.begin(), traced.end(), [&](const char* field) { return run.first->fields.value(field, Json()) == r.fields.value(field, Json()); });
+        };
+        if (runs.empty() || !same(runs.back()))
+            runs.push_back({&r, r.at.line});
+        runs.back().last = r.at.line;
+    }
+    std::vector<std::string> rows;
+    for (const Run& run : runs) {
+        const Record& r = *run.first;
+        const Record* closing = run.closing;
+        rows.push_back(html::row({html::raw_cell(fmt::format("<a class=\"f\" href=\"#{}\">{}.jsonl</a>, {}–{}", escaped(html::anchor(r.at)), escaped(r.at.file), r.at.line, run.last), "l"),
+                                  html::raw_cell("<code>" + escaped(r.word("command")) + "</code>", "l"), html::cell(Results::number(r, "seed")), html::raw_cell("<code>" + escaped(r.word("commit")) + "</code>"),
+                                  html::text_cell(fmt::format("{}, {}, {}", r.word("cpu"), r.word("simd_target"), counted(static_cast<std::size_t>(std::clamp(r.number("threads"), 0.0, 1e6)), "thread", "threads"))),
+                                  closing ? html::cell(Results::number(*closing, "seconds"), duration(closing->number("seconds"))) : html::text_cell(""),
+                                  html::text_cell(closing ? closing->word("finished") : "")}));
+    }
+    return html::section("provenance", "Provenance: where everything comes from",
+                         html::table("Command, seed, commit and machine of every line.",
+                                     {html::row({html::head_cell("file, lines"), html::head_cell("command"), html::head_cell("seed"), html::head_cell("commit"), html::head_cell("machine"),
+                                                 html::head_cell("took"), html::head_cell("finished")})},
+                                     {html::block(rows)}));
+}
+
+std::string lines_section(const Results& results)
+{
+    std::string body, file;
+    for (const Record& r : results.all()) {
+        if (r.at.file != file) {
+            body += fmt::format("{}<details><summary>{}.jsonl</summary>\n<ol class=\"lines\">\n", file.empty() ? "" : "</ol></details>\n", escaped(r.at.file));
+            file = r.at.file;
+        }
+        body += fmt::format("<li id=\"{}\" value=\"{}\"><code>{}</code></li>\n", escaped(html::anchor(r.at)), r.at.line, escaped(r.text));
+    }
+    return body.empty() ? "" : html::section("lines", "Lines of results", body + "</ol></details>\n");
+}
+
+} // namespace cinch

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/report/reproduce.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+
+#include <fcntl.h>
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include "experiments/report/chart.hpp"
+#include "experiments/report/child.hpp"
+#include "experiments/report/interrupt.hpp"
+#include "experiments/report/number.hpp"
+#include "experiments/report/page/page.hpp"
+#include "experiments/report/record_output.hpp"
+#include "experiments/report/results.hpp"
+#include "experiments/report/stages.hpp"
+#include "toolkit/surface/input_error.hpp"
+
+namespace cinch {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// Held while results are written. Two runs at once would take turns in spoiling each other's measurements.
+class FolderLock {
+public:
+    explicit FolderLock(const fs::path& folder) : file_(open((folder / ".lock").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0644))
+    {
+        if (file_ < 0)
+            throw InputError::in_file(folder.string(), "cannot be written");
+        if (flock(file_, LOCK_EX | LOCK_NB) != 0)
+            throw InputError::in_file(folder.string(), "another 'cinch reproduce' is writing there; wait for it, or use another --out");
+    }
+    ~FolderLock() { close(file_); }
+    FolderLock(const FolderLock&) = delete;
+    FolderLock& operator=(const FolderLock&) = delete;
+
+private:
+    int file_;
+};
+
+std::string command_of(const std::vector<std::string>& arguments) { return fmt::format("cinch {}", fmt::join(arguments, " ")); }
+
+/// Whether the stored file is what this run would make, or all of what a quick run makes a part of.
+bool is_stored(const fs::path& file, const Stage& stage, const ReproduceOptions& options)
+{
+    std::error_code error;
+    if (!fs::exists(file, error))
+        return false;
+    std::vector<Damage> damage;
+    const std::vector<Record> records = read_results(file, damage);
+    if (records.empty())
+        return false;
+    const Record& closing = records.back();
+    if (closing.number("status") != 0 || closing.word("commit") != provenance(1, 0).commit)
+        return false;
+    const std::string by = closing.word("measured_by");
+    return by == command_of(arguments_of(stage, options.quick, options.seed)) || by == command_of(arguments_of(stage, false, options.seed));
+}
+
+/// The last line of a file: what makes it whole.
+std::string closing_line(const Stage& stage, const ReproduceOptions& options, std::size_t lines, int status, double seconds)
+{
+    return json_line({{"experiment", "reproduce"}, {"stage", stage.name}, {"what", stage.what}, {"lines", lines}, {"status", status}, {"seconds", seconds},
+                      {"measured_by", command_of(arguments_of(stage, options.quick, options.seed))}, {"quick", options.quick},
+                      {"finished", fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr)))}},
+                     provenance(1, options.seed));
+}
+
+enum class Outcome { stored, check_failed, failed, interrupted };
+
+Outcome run(const Stage& stage, const ReproduceOptions& options)
+{
+    const fs::path file = fs::path(options.out) / (stage.name + ".jsonl"), part = fs::path(options.out) / (stage.name + ".part");
+    const auto start = std::chrono::steady_clock::now();
+    const int status = run_child(arguments_of(stage, options.quick, options.seed), part);
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    std::error_code ignored;
+    if (interrupted() || status == 130) {
+        fs::remove(part, ignored);
+        return Outcome::interrupted;
+    }
+    if (status != 0 && status != 1) { // 1: complete, but a check failed
+        fs::remove(part, ignored);
+        return Outcome::failed;
+    }
+    std::size_t lines = 0;
+    {
+        std::ifstream in(part);
+        for (std::string line; std::getline(in, line);)
+            ++lines;
+    }
+    if (lines == 0)
+        return Outcome::failed;
+    std::ofstream out(part, std::ios::app);
+    out << closing_line(stage, options, lines, status, seconds) << '\n';
+    out.close();
+    if (!out)
+        throw InputError::in_file(part.string(), "writing failed; is the disk full?");
+    fs::rename(part, file);
+    return status == 0 ? Outcome::stored : Outcome::check_failed;
+}
+
+/// Reads what is stored and writes the page. Damage goes to standard error too.
+std::vector<Damage> write_page(const fs::path& folder, const fs::path& page)
+{
+    Results results;
+    ReportNotes notes;
+    for (const Stage& stage : stages()) {
+        const fs::path file = folder / (stage.name + ".jsonl");
+        std::error_code error;
+        if (!fs::exists(file, error)) {
+            notes.missing.push_back(stage.what);
+            continue;
+        }
+        for (Record& record : read_results(file, notes.damage))
+            results.add(std::move(record));
+    }
+    const fs::path part = page.string() + ".part";
+    {
+        std::ofstream out(part, std::ios::binary);
+        out << report_page(results, notes);
+        if (!out.flush())
+            throw InputError::in_file(part.string(), "cannot be written");
+    }
+    fs::rename(part, page);
+    for (const Damage& damage : notes.damage)
+        fmt::print(stderr, "cinch: {}\n", describe({(folder / damage.file).string(), damage.line, damage.what + "; the file is left out"}));
+    return notes.damage;
+}
+
+} // namespace
+
+int reproduce(const ReproduceOptions& options)
+{
+    require_gnuplot("cinch reproduce");
+    std::error_code error;
+    fs::create_directories(options.out, error);
+    const FolderLock lock(options.out);
+    catch_interrupt();
+    std::vector<Stage> wanted;
+    double left = 0;
+    for (Stage& stage : stages()) {
+        if (options.quick && stage.quick.empty())
+            continue;
+        if (is_stored(fs::path(options.out) / (stage.name + ".jsonl"), stage, options)) {
+            fmt::print(stderr, "{}: stored\n", stage.name);
+            continue;
+        }
+        left += options.quick ? stage.quick_seconds : stage.seconds;
+        wanted.push_back(std::move(stage));
+    }
+    const double planned = left;
+    const auto start = std::chrono::steady_clock::now();
+    std::vector<std::string> bad;
+    for (std::size_t i = 0; i < wanted.size() && !interrupted(); ++i) {
+        const Stage& stage = wanted[i];
+        // What is left in proportion to how long the others took, once they say something about this machine.
+        const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), done = planned - left;
+        fmt::print(stderr, "{}/{} {}: {}; {} left\n", i + 1, wanted.size(), stage.name, stage.what, duration(left * (done > 0.05 * planned ? elapsed / done : 1)));
+        switch (run(stage, options)) {
+        case Outcome::stored: break;
+        case Outcome::check_failed: bad.push_back(stage.name + ": a check failed"); break;
+        case Outcome::failed: bad.push_back(stage.name + ": 'cinch' failed, nothing is stored"); break;
+        case Outcome::interrupted: continue;
+        }
+        left -= options.quick ? stage.quick_seconds : stage.seconds;
+    }
+    const fs::path page = fs::path(options.out) / "report.html";
+    const auto damage = write_page(options.out, page);
+    for (const std::string& what : bad)
+        fmt::print(stderr, "cinch: {}\n", what);
+    if (interrupted()) {
+        fmt::print(stderr, "cinch: interrupted; what is finished is kept, and the same command continues\n");
+        return 130;
+    }
+    fmt::print("{}\n", page.string());
+    return bad.empty() && damage.empty() ? 0 : 1;
+}
+
+int report(const ReportOptions& options)
+{
+    require_gnuplot("cinch report");
+    const fs::path folder = options.folder;
+    std::error_code error;
+    const auto all = stages();
+    if (std::none_of(all.begin(), all.end(), [&](const Stage& stage) { return fs::exists(folder / (stage.name + ".jsonl"), error); }))
+        throw InputError::in_file(options.folder, "holds no results; 'cinch reproduce --out " + options.folder + "' makes them");
+    const fs::path page = options.page.empty() ? folder / "report.html" : fs::path(options.page);
+    const auto damage = write_page(folder, page);
+    fmt::print("{}\n", page.string());
+    return damage.empty() ? 0 : 1;
+}
+
+} // namespace cinch

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace cinch {
+
+struct ReproduceOptions {
+    std::string out = "results";
+    bool quick = false;
+    std::uint64_t seed = 0;
+};
+
+/// Runs every experiment that is not stored yet, each as a process of its own, and writes the page. An experiment's file appears only
+/// when it is whole, so a run that was stopped or killed continues where it was. Returns the exit status: 0 done, 1 an experiment
+/// failed or a result is damaged, 130 interrupted, with what is finished kept.
+int reproduce(const ReproduceOptions& options);
+
+struct ReportOptions {
+    std::string folder;
+    std::string page; ///< file to write; empty: report.html in the folder
+};
+
+/// Writes the page of stored results again. Returns the exit status: 1 if a file is damaged; it is named and left out.
+int report(const ReportOptions& options);
+
+} // namespace cinch

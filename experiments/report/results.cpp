@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/report/results.hpp"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+
+#include <fmt/format.h>
+
+namespace cinch {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Traced combined(const Traced& a, const Traced& b, double value)
+{
+    Traced out{value, a.from};
+    for (const Source& source : b.from)
+        if (std::find(out.from.begin(), out.from.end(), source) == out.from.end())
+            out.from.push_back(source);
+    return out;
+}
+
+template <class Better> Traced extreme(const std::vector<Traced>& all, Better better)
+{
+    Traced best;
+    for (const Traced& x : all)
+        if (x.known() && (!best.known() || better(x.value, best.value)))
+            best = x;
+    return best;
+}
+
+// What the page reads and no two commands call by the same name with another type; anything else may be what it likes.
+constexpr std::array texts{"experiment", "command", "commit", "version", "cpu", "simd_target", "method", "precision", "input", "motion", "arithmetic", "guarantee", "scene", "backend",
+                           "file", "figure", "stage", "finished"};
+constexpr std::array numbers{"seed", "threads", "n", "vertices", "ns_per_bound", "level", "bvs", "mean_ratio", "max_ratio", "kdop",
+                             "below_exact", "ratio_to_double", "frames", "bodies", "evaluate_ms", "update_ms", "query_ms", "total_ms", "pairs", "pairs_differing", "megabytes_per_body",
+                             "mean_vertices", "mean_bounds", "mean_box_tests", "passes", "gap_percent", "least_n", "most_n", "bounds", "proven", "violated", "seconds", "lines", "status"};
+constexpr std::array required{"experiment", "command", "commit", "seed", "cpu"};
+
+std::string fault(const Json& record)
+{
+    if (!record.is_object())
+        return "expected a JSON object";
+    for (const char* name : required)
+        if (!record.contains(name))
+            return fmt::format("has no \"{}\", so it cannot be traced", name);
+    for (const char* name : texts)
+        if (record.contains(name) && !record[name].is_string())
+            return fmt::format("\"{}\" must be a string", name);
+    for (const char* name : numbers)
+        if (record.contains(name) && !record[name].is_number() && !record[name].is_null())
+            return fmt::format("\"{}\" must be a number or null", name);
+    return "";
+}
+
+} // namespace
+
+std::string Record::word(const char* field) const
+{
+    const auto at_field = fields.find(field);
+    return at_field != fields.end() && at_field->is_string() ? at_field->get<std::string>() : "";
+}
+
+double Record::number(const char* field) const
+{
+    const auto at_field = fields.find(field);
+    return at_field != fields.end() && at_field->is_number() ? at_field->get<double>() : NAN;
+}
+
+Traced operator+(const Traced& a, const Traced& b) { return combined(a, b, a.value + b.value); }
+Traced operator-(const Traced& a, const Traced& b) { return combined(a, b, a.value - b.value); }
+Traced operator*(const Traced& a, const Traced& b) { return combined(a, b, a.value * b.value); }
+Traced operator/(const Traced& a, const Traced& b) { return combined(a, b, a.value / b.value); }
+Traced operator/(double a, const Traced& b) { return {a / b.value, b.from}; }
+Traced operator-(double a, const Traced& b) { return {a - b.value, b.from}; }
+Traced operator/(const Traced& a, double b) { return {a.value / b, a.from}; }
+
+Traced mean(const std::vector<Traced>& all)
+{
+    Traced sum{0, {}};
+    double count = 0;
+    for (const Traced& x : all)
+        if (x.known()) {
+            sum = sum + x;
+            ++count;
+        }
+    return count > 0 ? sum / count : Traced{};
+}
+
+Traced least(const std::vector<Traced>& all) { return extreme(all, std::less<>()); }
+Traced greatest(const std::vector<Traced>& all) { return extreme(all, std::greater<>()); }
+
+std::vector<const Record*> Results::where(const Json& fields) const
+{
+    std::vector<const Record*> found;
+    for (const Record& record : records_)
+        if (std::all_of(fields.items().begin(), fields.items().end(), [&](const auto& field) {
+                const auto at = record.fields.find(field.key());
+                return at != record.fields.end() && *at == field.value();
+            }))
+            found.push_back(&record);
+    return found;
+}
+
+Traced Results::number(const Record& record, const char* field)
+{
+    const double value = record.number(field);
+    return std::isfinite(value) ? Traced{value, {record.at}} : Traced{};
+}
+
+Traced Results::number(const Json& fields, const char* field) const
+{
+    for (const Record* record : where(fields))
+        if (const Traced found = number(*record, field); found.known())
+            return found;
+    return {};
+}
+
+std::string describe(const Damage& damage)
+{
+    return damage.line ? fmt::format("{}:{}: {}", damage.file, damage.line, damage.what) : fmt::format("{}: {}", damage.file, damage.what);
+}
+
+bool is_closing(const Record& record) { return record.fields.contains("stage") && record.fields.contains("lines"); }
+
+std::vector<Record> read_results(const std::filesystem::path& file, std::vector<Damage>& damage)
+{
+    const std::string name = file.filename().string(), stem = file.stem().string();
+    const std::size_t before = damage.size();
+    std::vector<Record> records;
+    std::ifstream in(file, std::ios::binary);
+    if (!in) {
+        damage.push_back({name, 0, "cannot be read"});
+        return {};
+    }
+    std::size_t line = 0;
+    bool closed = false;
+    for (std::string text; std::getline(in, text);) {
+        ++line;
+        auto bad = [&](std::string what) { damage.push_back({name, line, std::move(what)}); };
+        if (in.eof()) {
+            bad("ends in the middle of the line");
+            break;
+        }
+        if (closed) {
+            bad("something follows the closing line");
+            break;
+        }
+        const Json fields = Json::parse(text, nullptr, false);
+        if (fields.is_discarded()) {
+            bad("is not JSON");
+            continue;
+        }
+        if (std::string what = fault(fields); !what.empty()) {
+            bad(std::move(what));
+            continue;
+        }
+        Record record{{stem, line}, fields, std::move(text)};
+        if (is_closing(record)) {
+            closed = true;
+            if (record.number("lines") != static_cast<double>(line - 1))
+                bad("lines are missing before it");
+        }
+        records.push_back(std::move(record));
+    }
+    if (!closed && damage.size() == before)
+        damage.push_back({name, line, "is the last line, and the closing one is missing: the file is truncated"});
+    return damage.size() == before ? std::move(records) : std::vector<Record>();
+}
+
+} // namespace cinch
