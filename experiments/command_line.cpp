@@ -171,7 +171,8 @@ void add_view(CLI::App& app, ViewOptions& o)
                fmt::format("a scene ({}, or a .json file), a shape ({}), a mesh or a skinned character [the paper's figures: brain-pull, santa-ring-6 and fishes]",
                            fmt::join(shipped_scenes(), ", "), fmt::join(shape_names(), ", ")))
             ->option_text("");
-    option("--report", o.report, "the page to write; it needs nothing else, and no network")->required()->option_text("FILE.html");
+    option("--report", o.report, "the page to write; it needs nothing else, and no network")->option_text("FILE.html");
+    command.add_flag("--json", o.json, "the views as JSON Lines on standard output and nothing else");
     option("--frames", o.request.frames, "how many at most, evenly spread, the first and the last included [60]")->check(CLI::Range(1, 10000))->option_text("N")->needs(scene);
     option("--levels", o.request.levels, "levels of the BVH, from the root [8]")->check(CLI::Range(1, 16))->option_text("N")->needs(scene);
     option("--kdop", o.request.kdop, "greatest k to choose from on the page: 6, 14, 18 or 26 [6]")->check(CLI::IsMember({6, 14, 18, 26}))->option_text("K")->needs(scene);
@@ -187,7 +188,7 @@ void add_view(CLI::App& app, ViewOptions& o)
     }, wrapped("to choose from on the page, the first one shown first [all; best]; beside each, the vertices' own bound"))->delimiter(',')->option_text("NAME,...")->needs(scene);
     option("--bits", o.request.bits, "of the grid that positions are rounded to [16]; fewer make a smaller page")->check(CLI::Range(8, 16))->option_text("N")->needs(scene);
     option("--nodes", o.request.nodes, "simulation nodes per body, where they are sampled [as usual]")->check(CLI::Range(1, 100000))->option_text("N")->needs(scene);
-    option("--seed", o.request.seed, "seed of everything random [0]")->option_text("N")->needs(scene);
+    option("--seed", o.request.seed, "seed of everything random [0]")->option_text("N");
     command.add_option_function<std::vector<double>>("--camera", [&o](const std::vector<double>& degrees) {
         o.request.azimuth = degrees[0];
         o.request.elevation = degrees[1];

@@ -7,7 +7,8 @@ namespace cinch {
 
 struct ViewOptions {
     ViewRequest request; ///< without a scene: the views of the report
-    std::string report; ///< HTML file to write
+    std::string report; ///< HTML page to write; empty: none
+    bool json = false;  ///< the views as JSON Lines
     int threads = 0;
 };
 

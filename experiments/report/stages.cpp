@@ -24,6 +24,7 @@ std::vector<Stage> stages()
         all.push_back({name, what, words(arguments), words(quick), seconds, quick_seconds});
     };
     stage("scaling", "time of one bound (Table 1)", 60, "scaling --seconds 3", 12, "scaling --seconds 0.2");
+    stage("views", "views of deforming surfaces (Figs. 1, 6 and 7)", 60, "view", 15, "view brain-pull --frames 16 --levels 6 --kdop 14 --bits 14 --camera -55,14");
 #ifdef CINCH_EXACT
     stage("tightness", "tightness of the pulled brain (Figs. 1 and 5)", 400, "tightness brain-pull --frames 12", 25,
           "tightness brain-pull --frames 2 --leaf 256 --sweep 65 --methods sphere,eq12,limited,best");

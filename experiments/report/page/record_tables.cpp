@@ -112,7 +112,7 @@ std::string lines_section(const Results& results)
             body += fmt::format("{}<details><summary>{}.jsonl</summary>\n<ol class=\"lines\">\n", file.empty() ? "" : "</ol></details>\n", escaped(r.at.file));
             file = r.at.file;
         }
-        body += fmt::format("<li id=\"{}\" value=\"{}\"><code>{}</code></li>\n", escaped(html::anchor(r.at)), r.at.line, escaped(r.text));
+        body += fmt::format("<li id=\"{}\" value=\"{}\"><code>{}</code></li>\n", escaped(html::anchor(r.at)), r.at.line, escaped(is_view(r) ? r.text.substr(0, 200) + " … (the data of the view above)" : r.text));
     }
     return body.empty() ? "" : html::section("lines", "Lines of results", body + "</ol></details>\n");
 }
