@@ -57,7 +57,7 @@ std::string svg(const std::vector<Chart>& charts)
 {
     std::string script = fmt::format("set encoding utf8\n"
                                      "set terminal svg size 760,{} dynamic enhanced background '#ffffff' font 'sans-serif,15'\n"
-                                     "set multiplot layout {},1\nset grid lc rgb '#dddddd'\nset border lc rgb '#555555'\nset key outside right top samplen 2 spacing 1.1\n",
+                                     "set multiplot layout {},1\nset grid lc rgb '#dddddd'\nset border lc rgb '#555555'\nset key outside bottom center horizontal samplen 1.5 spacing 1.15 font ',13'\n",
                                      430 * charts.size(), charts.size());
     for (const Chart& chart : charts)
         script += script_of(chart);

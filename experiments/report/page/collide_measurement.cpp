@@ -26,12 +26,11 @@ CollideTimes collide_times(const Results& results, const std::string& scene, con
 
 Traced avoided_evaluation(const CollideTimes& full, const CollideTimes& lazy)
 {
-    const Traced saved = full.total - lazy.total;
-    if (!saved.known() || saved.value <= 0 || !lazy.vertices.known())
+    if (!lazy.vertices.known())
         return {};
     Traced unused = 1 - lazy.vertices / lazy.all_vertices; // of a vertex of several leaves each counts
     unused.value = std::clamp(unused.value, 0.0, 1.0);
-    return full.evaluate * unused / saved;
+    return full.evaluate * unused;
 }
 
 std::string ring_scene(int number) { return fmt::format("santa-ring-{}", number); }
@@ -44,10 +43,12 @@ std::string why_gain(const Results& results, const std::string& scene, double pa
     std::string why = gain.value >= 1 ? fmt::format("Eq. 12 on demand is {} times faster than a full update, in the paper {:g}.", figure(gain), paper_gain)
                                       : fmt::format("Eq. 12 on demand takes {} times as long as a full update; in the paper it was {:g} times faster.", figure(eq12.total / full.total), paper_gain);
     if (gain.value < paper_gain)
-        why += fmt::format(" Since then the full update has become {} times faster, Eq. 12 {} times: all vertices are evaluated by SIMD, in order, and the frame’s bounds are few and scattered.",
+        why += fmt::format(" Since then the full update has become {} times faster, Eq. 12 {} times: to evaluate all vertices in order gains more from SIMD than bounds on demand do.",
                            figure(paper_full / full.total), figure(paper_total / eq12.total));
-    if (const Traced avoided = avoided_evaluation(full, eq12); avoided.known())
-        why += fmt::format(" {} of what is saved is vertices not evaluated: {} of {} are.", percent(avoided), figure(eq12.vertices), figure(eq12.all_vertices));
+    if (const Traced avoided = avoided_evaluation(full, eq12), saved = full.total - eq12.total, share = avoided / saved; avoided.known()) {
+        why += fmt::format(" It evaluates {} of {} vertices per frame; the evaluation that it avoids is {} of the full update", figure(eq12.vertices), figure(eq12.all_vertices), percent(avoided / full.total));
+        why += saved.value <= 0 ? ", too little to pay for its bounds." : share.value <= 1 ? fmt::format(" and {} of the gain.", percent(share)) : ", more than is gained: its bounds cost the rest.";
+    }
     if (clusters.known())
         why += fmt::format(" A full refit with 16-triangle leaves alone gains {}", figure(full.total / clusters.total));
     if (own.known())

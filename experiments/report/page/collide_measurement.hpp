@@ -18,7 +18,7 @@ struct CollideTimes {
 };
 CollideTimes collide_times(const Results& results, const std::string& scene, const char* backend);
 
-/// The part of what `lazy` saves over `full` that is evaluation of vertices it never needs.
+/// Time of a full evaluation for the vertices that `lazy` does not need, ms; unknown if it does not count them.
 Traced avoided_evaluation(const CollideTimes& full, const CollideTimes& lazy);
 
 /// "santa-ring-3", from its number in Table 2.

@@ -83,8 +83,8 @@ std::string digits(double x)
     const double size = std::abs(x);
     if (!std::isfinite(x))
         return "–";
-    if (x == 0)
-        return "0";
+    if (x == std::trunc(x) && size < 1e15) // counts, and what happens to be whole
+        return (x < 0 ? "−" : "") + grouped(static_cast<std::size_t>(size));
     if (size >= 1e15 || size < 1e-3)
         return fmt::format("{:.2e}", x);
     if (size >= 999.5)

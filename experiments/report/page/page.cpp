@@ -110,8 +110,8 @@ std::string report_page(const Results& results, const ReportNotes& notes)
                        "<cite>Tight and efficient surface bounds in meshless animation</cite>, beside what <code>cinch</code> measures on this machine.</p>\n</header>\n";
     for (const Damage& damage : notes.damage)
         body += fmt::format("<p class=\"damage\"><strong>Left out:</strong> {}</p>\n", escaped(describe(damage)));
-    for (const std::string& missing : notes.missing)
-        body += fmt::format("<p class=\"missing\"><strong>Not run yet:</strong> {}</p>\n", escaped(missing));
+    if (!notes.missing.empty())
+        body += fmt::format("<p class=\"missing\"><strong>Not run yet:</strong> {}</p>\n", escaped(fmt::format("{}", fmt::join(notes.missing, "; "))));
     for (const Record& record : results.all())
         if (is_closing(record) && record.number("status") != 0)
             body += fmt::format("<p class=\"damage\"><strong>A check failed:</strong> {}: <code>{}</code> ended with exit status {}</p>\n", escaped(record.word("stage")), escaped(record.word("measured_by")),

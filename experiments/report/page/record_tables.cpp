@@ -37,6 +37,19 @@ std::vector<std::string> columns_of(const Record& record)
     return columns;
 }
 
+/// A line for people: of one with much data its fields without that, and how long it is.
+std::string shortened(const Record& r)
+{
+    constexpr std::size_t most = 8000;
+    if (r.text.size() <= most)
+        return r.text;
+    Json rest = Json::object();
+    for (const auto& [name, value] : r.fields.items())
+        if (value.is_primitive() && (!value.is_string() || value.get_ref<const std::string&>().size() <= 1000))
+            rest[name] = value;
+    return fmt::format("{} … {} bytes in all", rest.dump(-1, ' ', false, Json::error_handler_t::replace), grouped(r.text.size()));
+}
+
 } // namespace
 
 std::string record_tables(const Results& results)
@@ -112,7 +125,7 @@ std::string lines_section(const Results& results)
             body += fmt::format("{}<details><summary>{}.jsonl</summary>\n<ol class=\"lines\">\n", file.empty() ? "" : "</ol></details>\n", escaped(r.at.file));
             file = r.at.file;
         }
-        body += fmt::format("<li id=\"{}\" value=\"{}\"><code>{}</code></li>\n", escaped(html::anchor(r.at)), r.at.line, escaped(is_view(r) ? r.text.substr(0, 200) + " … (the data of the view above)" : r.text));
+        body += fmt::format("<li id=\"{}\" value=\"{}\"><code>{}</code></li>\n", escaped(html::anchor(r.at)), r.at.line, escaped(shortened(r)));
     }
     return body.empty() ? "" : html::section("lines", "Lines of results", body + "</ol></details>\n");
 }

@@ -1,0 +1,99 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""reproduce_test.py PROGRAM FOLDER: a quick run that is killed continues, gives a page whose figures all lead to a line, and survives damage."""
+
+import html.parser
+import json
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+
+class Page(html.parser.HTMLParser):
+    """Ids, links into the page, charts and text."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.ids, self.links, self.charts, self.text, self.remote = [], [], 0, [], []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attributes):
+        values = dict(attributes)
+        if "id" in values:
+            self.ids.append(values["id"])
+        if tag == "a" and values.get("href", "").startswith("#"):
+            self.links.append((values["href"][1:], "f" == values.get("class")))
+        elif tag in ("a", "link", "img", "script", "iframe") and (values.get("href") or values.get("src")):
+            self.remote.append(values)
+        self.charts += tag == "figure"
+
+    def handle_data(self, data):
+        self.text.append(data)
+
+
+def main():
+    program, folder = sys.argv[1], pathlib.Path(sys.argv[2])
+    shutil.rmtree(folder, ignore_errors=True)
+    command = [program, "reproduce", "--quick", "--out", str(folder)]
+
+    # Killed outright while the second experiment runs.
+    run = subprocess.Popen(command, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+    while run.poll() is None and not (folder / "tightness.part").exists():
+        time.sleep(0.02)
+    run.send_signal(signal.SIGKILL)
+    run.wait()
+    stored = sorted(file.name for file in folder.glob("*.jsonl"))
+    assert stored == ["scaling.jsonl"], stored
+    before = (folder / "scaling.jsonl").read_bytes()
+
+    start = time.monotonic()
+    done = subprocess.run(command, capture_output=True, text=True)
+    seconds = time.monotonic() - start
+    assert done.returncode == 0, (done.returncode, done.stderr)
+    assert "scaling: stored" in done.stderr and " left" in done.stderr, done.stderr
+    assert (folder / "scaling.jsonl").read_bytes() == before, "what was finished was measured again"
+    assert not list(folder.glob("*.part"))
+    assert done.stdout.strip() == str(folder / "report.html"), done.stdout
+
+    text = (folder / "report.html").read_text()
+    assert len(text) < 25e6
+    page = Page(text)
+    assert len(page.ids) == len(set(page.ids)), "an id is there twice"
+    ids, lines = set(page.ids), {}
+    for file in folder.glob("*.jsonl"):
+        for number, line in enumerate(file.read_text().splitlines(), 1):
+            lines[f"{file.stem}.{number}"] = json.loads(line)
+    figures = [target for target, is_figure in page.links if is_figure]
+    assert len(figures) > 300, len(figures)
+    for target in figures:
+        assert target in ids and target in lines, f"#{target} leads to no line"
+        for field in ("command", "seed", "commit", "cpu"):
+            assert field in lines[target], (target, field)
+    for target, _ in page.links:
+        assert target in ids, f"#{target} leads nowhere"
+    assert not page.remote, page.remote
+    for part in ("claims", "table-1", "fig-5", "table-4", "cost", "proof", "provenance", "lines"):
+        assert part in ids, f"the page has no part '{part}'"
+    assert page.charts >= 8, page.charts
+    words = "".join(page.text)
+    assert "Left out:" not in words and "A check failed:" not in words
+
+    # Once more: nothing is left to run. Then damage.
+    again = subprocess.run(command, capture_output=True, text=True)
+    assert again.returncode == 0 and again.stderr.count(": stored") == len(list(folder.glob("*.jsonl"))), again.stderr
+    damaged = folder / "cost.jsonl"
+    damaged.write_bytes(damaged.read_bytes()[:-200])
+    report = subprocess.run([program, "report", str(folder)], capture_output=True, text=True)
+    assert report.returncode == 1 and "cost.jsonl:" in report.stderr, (report.returncode, report.stderr)
+    page = Page((folder / "report.html").read_text())
+    assert "cost" not in page.ids and "table-4" in page.ids
+    repaired = subprocess.run(command, capture_output=True, text=True)
+    assert repaired.returncode == 0 and "1/1 cost" in repaired.stderr, repaired.stderr
+    print(f"{len(figures)} figures, {page.charts} charts; {seconds:.0f} s after the kill")
+
+
+if __name__ == "__main__":
+    main()
