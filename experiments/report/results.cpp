@@ -124,15 +124,11 @@ std::string describe(const Damage& damage)
 
 bool is_view(const Record& record)
 {
-    if (record.word("experiment") != "view")
+    if (record.word("experiment") != "view" || !record.fields.contains("view") || !record.fields["view"].is_object())
         return false;
-    for (const char* field : {"title", "text", "scene"})
-        if (!record.fields.contains(field) || !record.fields[field].is_string())
-            return false;
-    for (const char* field : {"positions", "corners", "bounds", "first", "bvs"})
-        if (!record.fields.contains(field) || !record.fields[field].is_object())
-            return false;
-    return true;
+    const Json& view = record.fields["view"];
+    auto all = [&](std::initializer_list<const char*> fields, auto&& is) { return std::all_of(fields.begin(), fields.end(), [&](const char* f) { return view.contains(f) && is(view[f]); }); };
+    return all({"title", "text", "scene"}, [](const Json& j) { return j.is_string(); }) && all({"positions", "corners", "bounds", "first", "bvs"}, [](const Json& j) { return j.is_object(); });
 }
 
 bool is_closing(const Record& record) { return record.fields.contains("stage") && record.fields.contains("lines"); }

@@ -68,7 +68,7 @@ std::string views_of(const Results& results)
     std::vector<nlohmann::ordered_json> views;
     for (const Record& record : results.all())
         if (is_view(record))
-            views.push_back(record.fields);
+            views.push_back(record.fields["view"]);
     return views.empty() ? "" : view_sections(views);
 }
 

@@ -261,7 +261,7 @@ nlohmann::ordered_json make_view(const ViewRequest& request)
     const std::vector<double>& times = inputs.bodies[0].clip.time_s;
     const std::size_t frames = times.size();
     const DrawnBvs bvs(bodies, request.levels);
-    Json view{{"experiment", "view"}, {"title", request.title.empty() ? inputs.name : request.title}, {"text", request.text}, {"scene", request.scene}};
+    Json view{{"title", request.title.empty() ? inputs.name : request.title}, {"text", request.text}, {"scene", request.scene}};
     view["first"] = shown_first(request, frames, bvs.level.size() - 1);
     view["time_s"] = times;
     view["bodies"] = Json::array();
