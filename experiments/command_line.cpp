@@ -193,7 +193,7 @@ void add_report(CLI::App& app, ReportOptions& o)
                    "  cinch report results\n"
                    "  cinch report results --page paper.html\n"
                    "\n"
-                   "Exit status: 0 done, 1 a file is damaged (the page has the rest), 2 bad usage, or\n"
+                   "Exit status: 0 done, 1 a file is damaged (the page has the rest), 2 bad usage or\n"
                    "no results.");
 }
 
