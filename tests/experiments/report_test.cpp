@@ -222,7 +222,10 @@ TEST_CASE("every stage is a command that parses, and a quick run is a part of th
             for (const std::string& word : arguments_of(stage, is_quick, 7))
                 line += word + " ";
             INFO(line);
-            CHECK(test::cinch(line + "--help").status == 0);
+            const auto run = test::cinch(line + "--report /nosuch/page.html"); // what is refused after the options are understood, and before anything is run
+            INFO(run.err);
+            CHECK(run.status == 2);
+            CHECK(run.err.find("/nosuch/page.html: cannot be written") != std::string::npos);
             CHECK(line.find("--json") != std::string::npos);
         }
     }
