@@ -51,7 +51,7 @@ def main():
 
     # Killed outright while the second experiment runs.
     run = subprocess.Popen(command, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
-    while run.poll() is None and not (folder / "tightness.part").exists():
+    while run.poll() is None and not ((folder / "scaling.jsonl").exists() and list(folder.glob("*.part"))):
         time.sleep(0.02)
     run.send_signal(signal.SIGKILL)
     run.wait()
