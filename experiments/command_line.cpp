@@ -162,6 +162,51 @@ void add_collide(CLI::App& app, CollideOptions& o)
                    "scene, 130 interrupted (results so far are printed).");
 }
 
+void add_view(CLI::App& app, ViewOptions& o)
+{
+    CLI::App& command = *app.add_subcommand("view", "a page to look at: surface, nodes, bounds (Figs. 1, 6, 7)");
+    auto option = [&](const char* name, auto& value, const std::string& description) { return command.add_option(name, value, wrapped(description)); };
+    CLI::Option* scene =
+        option("SCENE", o.request.scene,
+               fmt::format("a scene ({}, or a .json file), a shape ({}), a mesh or a skinned character [the paper's figures: brain-pull, santa-ring-6 and fishes]",
+                           fmt::join(shipped_scenes(), ", "), fmt::join(shape_names(), ", ")))
+            ->option_text("");
+    option("--report", o.report, "the page to write; it needs nothing else, and no network")->option_text("FILE.html");
+    command.add_flag("--json", o.json, "the views as JSON Lines on standard output and nothing else");
+    option("--frames", o.request.frames, "how many at most, evenly spread, the first and the last included [60]")->check(CLI::Range(1, 10000))->option_text("N")->needs(scene);
+    option("--levels", o.request.levels, "levels of the BVH, from the root [8]")->check(CLI::Range(1, 16))->option_text("N")->needs(scene);
+    option("--kdop", o.request.kdop, "greatest k to choose from on the page: 6, 14, 18 or 26 [6]")->check(CLI::IsMember({6, 14, 18, 26}))->option_text("K")->needs(scene);
+    command.add_option_function<std::vector<std::string>>("--methods", [&o](const std::vector<std::string>& names) {
+        o.request.methods.clear();
+        for (const std::string& name : names) {
+            const auto method = named_method(name);
+            if (!method || *method == Method::vertices)
+                throw CLI::ValidationError("--methods", fmt::format("expected names of {}, found '{}'", fmt::join(std::span(method_names).first(9), ", "), name));
+            o.request.methods.push_back(*method);
+        }
+        o.request.method = o.request.methods.front();
+    }, wrapped("to choose from on the page, the first one shown first [all; best]; beside each, the vertices' own bound"))->delimiter(',')->option_text("NAME,...")->needs(scene);
+    option("--bits", o.request.bits, "of the grid that positions are rounded to [16]; fewer make a smaller page")->check(CLI::Range(8, 16))->option_text("N")->needs(scene);
+    option("--nodes", o.request.nodes, "simulation nodes per body, where they are sampled [as usual]")->check(CLI::Range(1, 100000))->option_text("N")->needs(scene);
+    option("--seed", o.request.seed, "seed of everything random [0]")->option_text("N");
+    command.add_option_function<std::vector<double>>("--camera", [&o](const std::vector<double>& degrees) {
+        o.request.azimuth = degrees[0];
+        o.request.elevation = degrees[1];
+    }, wrapped("where it is at first: degrees from +x towards +y, and up [35,20]"))->delimiter(',')->expected(2)->option_text("A,E")->needs(scene);
+    option("--threads", o.threads, "threads [all cores]; the page is the same")->check(CLI::Range(1, 1024))->option_text("N");
+    command.footer("Examples:\n"
+                   "  cinch view --report figures.html      Figs. 1, 6 and 7, about a minute\n"
+                   "  cinch view brain-pull --report brain.html --kdop 26\n"
+                   "  cinch view santa-ring-6 --report ring.html --methods best,eq12,convex\n"
+                   "  cinch view fishes --report fishes.html --frames 30 --levels 5 --bits 14\n"
+                   "  cinch view robot.glb --report robot.html\n"
+                   "\n"
+                   "Bounds are rounded outward to the grid of the vertices, so that what is drawn\n"
+                   "of a bound contains what is drawn of the surface.\n"
+                   "Exit status: 0 done, 2 bad usage or input, 130 interrupted (the page has the\n"
+                   "views and methods that were done).");
+}
+
 void add_reproduce(CLI::App& app, ReproduceOptions& o)
 {
     CLI::App& command = *app.add_subcommand("reproduce", "all of the paper's tables and figures, as a page");

@@ -8,6 +8,7 @@
 #include "experiments/scaling.hpp"
 #include "experiments/simulation/cost_simulation.hpp"
 #include "experiments/simulation/simulate.hpp"
+#include "experiments/view.hpp"
 #ifdef CINCH_EXACT
 #include "experiments/corners.hpp"
 #include "experiments/cost/cost.hpp"
@@ -23,6 +24,7 @@ namespace cinch {
 void add_scaling(CLI::App& app, ScalingOptions& o);
 void add_simulate(CLI::App& app, SimulateOptions& o);
 void add_collide(CLI::App& app, CollideOptions& o);
+void add_view(CLI::App& app, ViewOptions& o);
 void add_reproduce(CLI::App& app, ReproduceOptions& o);
 void add_report(CLI::App& app, ReportOptions& o);
 #ifdef CINCH_EXACT

@@ -68,6 +68,7 @@ void script(Input& input, const InputOptions& options, std::size_t default_nodes
     input.surface.weights = kernel_weights(input.surface.mesh, nodes, options.support > 0 ? options.support : 2, &alone);
     input.clip = scripted_clip(*motion, nodes.position, options.frames ? options.frames : 4);
     input.clip.name = motion_name;
+    input.nodes = nodes.position;
     if (nodes.position.size() < wanted)
         input.report.push_back(fmt::format("only {} for {} simulation nodes", counted(nodes.position.size(), "distinct place", "distinct places"), grouped(wanted)));
     if (alone)
@@ -162,6 +163,7 @@ Inputs load_scene(const InputOptions& options)
         body.simulated = true;
         body.simulation_nodes_fixed = found.scene.bodies[b].nodes == 0;
         body.surface = *simulation.bodies()[b].simulation.surface();
+        body.nodes = simulation.bodies()[b].simulation.body().rest;
         body.clip.name = "simulated";
         inputs.bodies.push_back(std::move(body));
     }
@@ -171,6 +173,8 @@ Inputs load_scene(const InputOptions& options)
             inputs.bodies[i].clip.frames.push_back(simulation.bodies()[chosen[i]].simulation.frame());
         }
     };
+    if (options.first_frame)
+        record();
     {
         Progress progress("simulating frames", last);
         for (std::size_t f = 1; f <= last; ++f) {
@@ -183,7 +187,7 @@ Inputs load_scene(const InputOptions& options)
             progress.done(f);
         }
     }
-    if (last == 0)
+    if (last == 0 && !options.first_frame)
         record();
     std::size_t vertices = 0, triangles = 0, nodes = 0, influences = 0;
     for (const Input& body : inputs.bodies) {

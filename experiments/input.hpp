@@ -21,6 +21,7 @@ struct InputOptions {
     double fps = 0;
     std::size_t frames = 0;
     bool last_frames = false; ///< of a scene: the last `frames` one after the other, instead of evenly spread
+    bool first_frame = false; ///< of a scene: the one at time 0 too
     std::uint64_t seed = 0;
     std::string body; ///< of a scene; empty: all of them, or the first where one is asked for
 };
@@ -29,6 +30,7 @@ struct InputOptions {
 struct Input {
     std::string name;
     DeformableSurface surface;
+    std::vector<Vec3> nodes; ///< rest positions of the simulation nodes; empty where they have none, as joints
     Clip clip;
     bool simulated = false; ///< by a scene
     bool simulation_nodes_fixed = false; ///< the input brings its own, instead of as many as asked for

@@ -46,6 +46,8 @@ int main(int argc, char** argv)
     add_simulate(app, simulate_options);
     CollideOptions collide_options;
     add_collide(app, collide_options);
+    ViewOptions view_options;
+    add_view(app, view_options);
     ReproduceOptions reproduce_options;
     add_reproduce(app, reproduce_options);
     ReportOptions report_options;
@@ -81,6 +83,8 @@ int main(int argc, char** argv)
             return simulate(simulate_options);
         if (parsed.got_subcommand("collide"))
             return collide(collide_options);
+        if (parsed.got_subcommand("view"))
+            return view(view_options);
         if (parsed.got_subcommand("reproduce"))
             return reproduce(reproduce_options);
         if (parsed.got_subcommand("report"))

@@ -3,16 +3,18 @@
 # Everything goes to standard error, so that what the program prints can be piped.
 
 packages=(g++ cmake ninja-build ccache git gnuplot-nox catch2 libbenchmark-dev libboost-dev libbullet-dev libcgal-dev
-  libcli11-dev libeigen3-dev libembree-dev libfcl-dev libfmt-dev libgmp-dev libhwy-dev libmpfr-dev librapidcheck-dev
-  libtbb-dev libtinygltf-dev lrslib nlohmann-json3-dev python3 python3-jsonschema zlib1g-dev)
+  libcli11-dev libeigen3-dev libembree-dev libfcl-dev libfmt-dev libgmp-dev libhwy-dev libjs-three libmpfr-dev
+  librapidcheck-dev libtbb-dev libtinygltf-dev lrslib nlohmann-json3-dev python3 python3-jsonschema zlib1g-dev)
+test_packages=(chromium chromium-driver)
 
+# install_packages [NAME...]: those above, and these.
 install_packages() {
   command -v dpkg-query >/dev/null || {
     echo "This is no Debian system; if the build fails, install the equivalents of: ${packages[*]}" >&2
     return
   }
   local missing=() name
-  for name in "${packages[@]}"; do
+  for name in "${packages[@]}" "$@"; do
     [ "$(dpkg-query -W -f '${db:Status-Status}' "$name" 2>/dev/null)" = installed ] || missing+=("$name")
   done
   [ ${#missing[@]} -gt 0 ] || return 0

@@ -122,6 +122,19 @@ std::string describe(const Damage& damage)
     return damage.line ? fmt::format("{}:{}: {}", damage.file, damage.line, damage.what) : fmt::format("{}: {}", damage.file, damage.what);
 }
 
+bool is_view(const Record& record)
+{
+    if (record.word("experiment") != "view")
+        return false;
+    for (const char* field : {"title", "text", "scene"})
+        if (!record.fields.contains(field) || !record.fields[field].is_string())
+            return false;
+    for (const char* field : {"positions", "corners", "bounds", "first", "bvs"})
+        if (!record.fields.contains(field) || !record.fields[field].is_object())
+            return false;
+    return true;
+}
+
 bool is_closing(const Record& record) { return record.fields.contains("stage") && record.fields.contains("lines"); }
 
 std::vector<Record> read_results(const std::filesystem::path& file, std::vector<Damage>& damage)

@@ -77,6 +77,9 @@ std::string describe(const Damage& damage);
 /// Returns no record at all if anything is wrong with it: what is left of a damaged file would pass for the whole.
 std::vector<Record> read_results(const std::filesystem::path& file, std::vector<Damage>& damage);
 
+/// What `view_sections` draws, and is too large to stand on a page twice.
+bool is_view(const Record& record);
+
 /// Of the file's closing line, as `closing_line` made it.
 bool is_closing(const Record& record);
 

@@ -47,6 +47,7 @@ std::vector<Stage> stages()
                               "080_single_point_n2 087_fewslack_n5 094_simplex01_n12 101_leaf_rounded_n6 108_ulp_slack_n2 115_large_generic_n100 122_large_narrow_n100 129_large_infeasible_n200";
     stage("corners", "true corners and maxima of the reference cases", 2, "corners " + cases, 2, "corners " + cases);
 #endif
+    stage("views", "views of deforming surfaces (Figs. 1, 6 and 7)", 60, "view", 15, "view brain-pull --frames 16 --levels 6 --kdop 14 --bits 14 --camera -55,14");
     return all;
 }
 

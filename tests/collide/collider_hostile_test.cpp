@@ -146,7 +146,8 @@ TEST_CASE("places far from the origin, each body's own or the same, at rest and 
         const Vec3 place = far * dice.point();
         for (const Vec3& target : {Vec3::Zero().eval(), place, Vec3(place[0], 0, 0)})
             for (int f = 0; f < 2; ++f)
-                bodies.add_frame({around(dice, 11, r, target + 0.2 * dice.point(), far < 1e7 ? 0.03 : 0), around(dice, 11, r, target - r * away + 0.2 * dice.point(), 0)});
+                bodies.add_frame({around(dice, 11, r, target + 0.2 * dice.point(), far < 1e7 ? 0.03 : 0),
+                                  around(dice, 11, r, target - r * away + 0.2 * dice.point(), 0)});
         // One body's origin moves on its own.
         bodies.add_frame({around(dice, 11, r, place, 0), Maps(11, moved_by(-away))});
         INFO("far " << far);
@@ -239,7 +240,8 @@ TEST_CASE("faces that touch exactly: coplanar, by an edge, by a corner, and bodi
     const Vec3 above(0, 0, 100);
     for (const Vec3& t : {Vec3(2, 0, 0), Vec3(2, 1, 0), Vec3(2, 2, 0), Vec3(2, 2, 2), Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(2 + 0x1p-51, 0, 0), Vec3(2 - 0x1p-52, 0, 0)})
         for (const Vec3& whole : {Vec3(0, 0, 0), Vec3(1 << 20, -(1 << 21), 3)}) // exact far away too, but for the last two
-            bodies.add_frame({Maps(1, moved_by(whole)), Maps(1, moved_by(whole + t)), Maps(1, moved_by(whole + Vec3(-3, -3, 1))), Maps(1, moved_by(whole + (t[0] > 1 ? above : t)))});
+            bodies.add_frame({Maps(1, moved_by(whole)), Maps(1, moved_by(whole + t)), Maps(1, moved_by(whole + Vec3(-3, -3, 1))),
+                              Maps(1, moved_by(whole + (t[0] > 1 ? above : t)))});
     CHECK(pairs_of(bodies) > 5000);
     check_all(bodies);
     check_all(bodies, {}, {1, 3});
@@ -254,11 +256,42 @@ TEST_CASE("faces that touch exactly: coplanar, by an edge, by a corner, and bodi
     check_all(same);
 }
 
+TEST_CASE("small bodies that touch a large one from outside: their origins are as far apart as they are large")
+{
+    Dice dice(28);
+    Bodies bodies;
+    bodies.surface.push_back(rigid(box({4096, 4096, 4096}, {9, 9, 9})));
+    for (int b = 0; b < 12; ++b)
+        bodies.surface.push_back(b % 2 ? rigid(box({2, 2, 2}, {2, 2, 2})) : soft(brain(60), 6));
+    for (int f = 0; f < 6; ++f) {
+        const Vec3 whole = f < 3 ? Vec3(0, 0, 0) : Vec3(1 << 24, -(1 << 22), 1 << 20);
+        std::vector<Maps> maps{Maps(1, moved_by(whole))};
+        for (std::size_t b = 1; b < bodies.surface.size(); ++b) {
+            Vec3 at = 2000 * dice.point(); // beside a face, touching it
+            at[static_cast<int>(b % 3)] = (b % 6 < 3 ? 1 : -1) * 2049;
+            for (double& x : at)
+                x = std::round(x);
+            maps.push_back(bodies.surface[b].weights.node_count == 1 ? Maps(1, moved_by(whole + at)) : around(dice, 6, dice.rotation(), whole + at, 0.01));
+        }
+        bodies.add_frame(maps);
+    }
+    CHECK(pairs_of(bodies) > 100);
+    check_all(bodies);
+    check_all(bodies, {}, {1, 3});
+    const std::vector<Bvh> trees = bodies.trees({16, 16});
+    Collider collider{LazyOptions{}};
+    for (std::size_t b = 0; b < trees.size(); ++b)
+        collider.add(trees[b], bodies.surface[b]);
+    collider.update(bodies.frame[0]);
+    CHECK((collider.trees()[0].origin() - collider.trees()[1].origin()).norm() > 1000);
+}
+
 TEST_CASE("nothing, one triangle, points and segments, all centroids alike, soups")
 {
     Dice dice(26);
-    TriangleMesh unused{{{0, 0, 0}, {1, 1, 1}}, {}}, one{{{-1, -1, 0}, {1, -1, 0.1}, {0, 1, 0}}, {{0, 1, 2}}}, point{{{0, 0, 0.03}}, {{0, 0, 0}}}, alike, points = soup(dice, 300, 0.3),
-        shells;
+    const TriangleMesh unused{{{0, 0, 0}, {1, 1, 1}}, {}}, one{{{-1, -1, 0}, {1, -1, 0.1}, {0, 1, 0}}, {{0, 1, 2}}}, point{{{0, 0, 0.03}}, {{0, 0, 0}}};
+    const TriangleMesh points = soup(dice, 300, 0.3);
+    TriangleMesh alike, shells;
     for (std::uint32_t i = 0; i < 200; ++i) { // the same centroid for all, of one shape or another
         alike.vertices.insert(alike.vertices.end(), {{1, 0, 0}, {0, 1, 0}, {-1, -1, 0}});
         alike.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
@@ -267,7 +300,7 @@ TEST_CASE("nothing, one triangle, points and segments, all centroids alike, soup
         shells.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
     }
     Bodies bodies;
-    for (const TriangleMesh* mesh : {&unused, &one, &point, &alike, &points, &shells})
+    for (const TriangleMesh* mesh : std::initializer_list<const TriangleMesh*>{&unused, &one, &point, &alike, &points, &shells})
         bodies.surface.push_back(patchy(dice, *mesh, 4, 3));
     bodies.surface.push_back({TriangleMesh{}, {}});
     bodies.surface.push_back(rigid({{{5, 5, 5}, {0, 0, 0.01}, {0, 0.1, 0.01}, {0.1, 0, 0.01}}, {{1, 2, 3}, {1, 2, 3}, {3, 2, 1}, {1, 1, 2}}})); // twice the same

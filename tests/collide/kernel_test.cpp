@@ -94,6 +94,23 @@ TrianglePoints almost_touching(Dice& dice, const TrianglePoints& t, double gap)
     }
 }
 
+// The same beyond the corner that is the furthest of all along some axis, so that it is the leaves' boxes that almost touch.
+TrianglePoints almost_touching_outside(Dice& dice, const std::vector<TrianglePoints>& all, double gap)
+{
+    const auto r = static_cast<Eigen::Index>(dice.below(3));
+    const double side = dice.below(2) ? 1 : -1;
+    Vec3 furthest = all[0][0];
+    for (const TrianglePoints& t : all)
+        for (const Vec3& x : t)
+            if (side * x[r] > side * furthest[r])
+                furthest = x;
+    const Vec3 corner = furthest + gap * dice.point();
+    TrianglePoints out{corner, corner + dice.point(), corner + dice.point()};
+    for (const std::size_t c : {1u, 2u})
+        out[c][r] = corner[r] + side * dice.unit();
+    return out;
+}
+
 struct Outcome {
     std::size_t hits = 0, doubtful = 0, misses = 0;
 };
@@ -116,7 +133,8 @@ TEST_CASE("what floats decide is true of every surface within their errors, on e
         const std::size_t lanes = std::size_t{4} << dice.below(3), triangles = std::max<std::size_t>(1, lanes / 3);
         const double error_a = on(std::exp2(-18 - 26 * dice.unit()), 0x1p-48), error_b = on(std::exp2(-18 - 26 * dice.unit()), 0x1p-48);
         const double bend_a = on(2 * error_a * (dice.below(2) ? 1 : dice.unit()), 0x1p-46), bend_b = on(2 * error_b * (dice.below(2) ? 1 : dice.unit()), 0x1p-46);
-        const double gap = (error_a + error_b + 0x1p-24) * std::exp2(8 * dice.symmetric());
+        const double shift_error = dice.below(2) ? on(std::exp2(-12 - 28 * dice.unit()), 0x1p-48) : 0;
+        const double gap = (error_a + error_b + shift_error + 0x1p-24) * std::exp2(8 * dice.symmetric());
         const double size = std::exp2(-4 * dice.unit());
         std::vector<TrianglePoints> of_a, of_b;
         for (std::size_t t = 0; t < triangles; ++t) {
@@ -124,26 +142,27 @@ TEST_CASE("what floats decide is true of every surface within their errors, on e
             if (dice.below(8) == 0)
                 of_a.back()[2] = of_a.back()[0] + dice.unit() * (of_a.back()[1] - of_a.back()[0]);
         }
+        const bool outside = dice.below(4) == 0;
         for (std::size_t t = 0; t < triangles; ++t) {
-            of_b.push_back(almost_touching(dice, of_a[dice.below(triangles)], gap));
+            of_b.push_back(!outside ? almost_touching(dice, of_a[dice.below(triangles)], gap) : almost_touching_outside(dice, of_a, gap));
             for (Vec3& x : of_b.back())
                 x = x.cwiseMax(-3).cwiseMin(3);
         }
         // The bodies' origins: the same, or `between` apart, known up to an error.
         ClusterInput in{lanes, 4, {0, 0, 0}, 0};
         Vec3 between = Vec3::Zero();
-        if (dice.below(2)) {
-            in.shift_error = static_cast<float>(error_a);
+        if (shift_error > 0) {
+            in.shift_error = succ(static_cast<float>(shift_error));
             for (std::size_t r = 0; r < 3; ++r) {
                 in.shift[r] = static_cast<float>(on(8 * dice.symmetric(), 0x1p-20));
-                between[static_cast<int>(r)] = static_cast<double>(in.shift[r]) + (dice.below(2) ? 1 : -1) * on(0.999 * error_a, 0x1p-48);
+                between[static_cast<int>(r)] = static_cast<double>(in.shift[r]) + (dice.below(2) ? 1 : -1) * on(shift_error, 0x1p-48);
             }
         }
         const Vec3 reference_a = on(8 * dice.point(), 0x1p-4), reference_b = on(Vec3(-between + 2 * dice.point()), 0x1p-4);
-        const Leaf a(dice, lanes, of_a, error_a, bend_a, reference_a, -reference_a), b(dice, lanes, of_b, error_b, bend_b, reference_b, between - reference_a);
         // Leaf a stands about the world's origin: its body's origin is at −reference.
-        Leaf moved_a = a, moved_b = b;
-        const ClusterPair pair{moved_a.slot.data(), moved_b.slot.data(), moved_a.dop, moved_b.dop, static_cast<std::uint32_t>(triangles), static_cast<std::uint32_t>(triangles)};
+        const Leaf a(dice, lanes, of_a, error_a, bend_a, reference_a, -reference_a), b(dice, lanes, of_b, error_b, bend_b, reference_b, between - reference_a);
+        const auto count = static_cast<std::uint32_t>(triangles);
+        const ClusterPair pair{a.slot.data(), b.slot.data(), a.dop, b.dop, count, count};
         std::vector<TriangleHit> found;
         std::uint64_t tests = 0;
         for (std::size_t i = 0; i < (round < 3000 ? targets.size() : 1); ++i) {

@@ -146,6 +146,21 @@ TEST_CASE("triangle pairs on which other programs fail")
         CHECK(exact_intersect(k.a, k.b) == k.expected);
         check(k.a, k.b, k.expected);
     }
+
+    // The wall of jgt-code #9, and others that stand on the line of its second corner.
+    const TrianglePoints wall{{{22.3743700520433002, 29.5499517077955005, 0.699999992258483972}, {22.3554557937079998, 29.5919729814260997, 0.600000003652259029},
+                               {22.3743700520433002, 29.5499517077955005, 0.600000003652259029}}};
+    std::size_t apart = 0;
+    for (const double low : {0.3, 0.600000003652259029, 0.65, 0.699999992258483972, 0.800000012016313988})
+        for (const double high : {0.599999, 0.7, 0.9})
+            for (const double x : {-0.02, -0.0189142583353004, 0.0, 0.0189142583353004, 0.02})
+                for (const double y : {-0.0420212736305992, 0.0, 0.0420212736305992, 0.05}) {
+                    const TrianglePoints other{{{wall[1][0], wall[1][1], low}, {wall[1][0], wall[1][1], high}, {wall[1][0] + x, wall[1][1] + y, 0.800000012016313988}}};
+                    const bool expected = exact_intersect(wall, other);
+                    apart += !expected;
+                    check(wall, other, expected);
+                }
+    CHECK((apart > 50 && apart < 290));
 }
 
 TEST_CASE("a coordinate that is not finite is taken to intersect")

@@ -79,10 +79,13 @@ void LazyRefit::begin(const BodyFrame& frame)
     expanded_.clear();
     ++frame_;
     stamp_ += 1;
-    if (stamp_ == last_stamp) {
-        stamp_ = 1;
-        for (std::uint32_t bv = 0; bv < links_.size(); ++bv)
+    if (stamp_ == last_stamp) { // both counts begin anew
+        for (std::uint32_t bv = 0; bv < links_.size(); ++bv) {
+            links_[bv].expanded = was_expanded(bv) ? 1 : 0;
             dop(bv)[dop_side(options_.kdop) - 1] = 0;
+        }
+        frame_ = 2;
+        stamp_ = 1;
     }
     full_ = false;
     if (links_.empty() || !known_)

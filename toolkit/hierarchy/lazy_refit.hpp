@@ -76,7 +76,8 @@ public:
     float* dop(std::uint32_t bv) { return dops_.data() + bv * dop_floats(options_.kdop); }
     const float* dop(std::uint32_t bv) const { return dops_.data() + bv * dop_floats(options_.kdop); }
 
-    /// A query looks at the children of the root, or of a BV whose parent's it looked at in this frame: they are noted where they are not up to date, and supply() bounds all that were noted, in parallel.
+    /// A query looks at a BV's children, of the root or where it looked at its parent's in this frame: they are noted where they are not up to
+    /// date, and supply() bounds all that were noted, in parallel.
     void expand(std::uint32_t bv);
     void want(std::uint32_t bv); ///< the same for one BV
     void supply();

@@ -11,6 +11,7 @@
 #include "experiments/report/page/record_tables.hpp"
 #include "experiments/report/page/sections.hpp"
 #include "experiments/report/page/style.hpp"
+#include "experiments/report/view.hpp"
 
 namespace cinch {
 namespace {
@@ -59,6 +60,16 @@ std::string contents(const std::vector<std::pair<std::string, std::string>>& par
     for (const auto& [id, title] : parts)
         out += fmt::format("<a href=\"#{}\">{}</a> ", id, title);
     return out + "</nav>\n";
+}
+
+// The views that are whole enough to be drawn.
+std::string views_of(const Results& results)
+{
+    std::vector<nlohmann::ordered_json> views;
+    for (const Record& record : results.all())
+        if (is_view(record))
+            views.push_back(record.fields);
+    return views.empty() ? "" : view_sections(views);
 }
 
 const char* reading = "“Here” is what this program measured; “paper / here” is the published figure over ours, so that with times a ratio above 1 says how many times faster it is here. Every figure of "
@@ -113,9 +124,15 @@ std::string report_page(const Results& results, const ReportNotes& notes)
             parts.emplace_back(section.id, section.title.substr(0, section.title.find(':')));
             rest += html::section(section.id, section.title, section.body);
         }
+    const std::string views = views_of(results);
+    if (!views.empty())
+        parts.insert(parts.begin(), {"views", "Look"});
     parts.emplace_back("provenance", "Provenance");
     parts.emplace_back("lines", "Lines");
-    body += contents(parts) + html::paragraph(reading) + claims + rest + provenance_section(results) + lines_section(results);
+    body += contents(parts);
+    if (!views.empty())
+        body += html::section("views", "To look at", views);
+    body += html::paragraph(reading) + claims + rest + provenance_section(results) + lines_section(results);
     return document("Tight and efficient surface bounds, reproduced", body);
 }
 

@@ -1,0 +1,17 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# cmake -DOUTPUT=x.cpp -DNAME=n -DFILES=a,b -P embed.cmake: the text of the files, one after the other, as cinch::embedded::n.
+# By way of hex digits, for which CMake has no other meaning.
+string(REPLACE "," ";" files "${FILES}")
+set(code "#include \"experiments/report/view/embedded.hpp\"\n\nnamespace cinch::embedded {\n\nstatic constexpr char text[] =\n    \"\"")
+foreach(file IN LISTS files)
+  file(READ ${file} text HEX)
+  string(LENGTH "${text}" digits)
+  set(at 0)
+  while(at LESS digits)
+    string(SUBSTRING "${text}" ${at} 16000 piece)
+    string(REGEX REPLACE "(..)" "\\\\x\\1" piece "${piece}")
+    string(APPEND code "\n    \"${piece}\"")
+    math(EXPR at "${at} + 16000")
+  endwhile()
+endforeach()
+file(WRITE ${OUTPUT} "${code};\n\nconst std::string_view ${NAME}(text, sizeof text - 1);\n\n} // namespace cinch::embedded\n")

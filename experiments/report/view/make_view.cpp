@@ -1,0 +1,336 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "experiments/input.hpp"
+#include "experiments/report/interrupt.hpp"
+#include "experiments/report/progress.hpp"
+#include "experiments/report/view.hpp"
+#include "experiments/report/view/grid.hpp"
+#include "experiments/report/view/pack.hpp"
+#include "experiments/simulation/find_scene.hpp"
+#include "toolkit/collide/collider.hpp"
+#include "toolkit/deform/parallel.hpp"
+#include "toolkit/deform/surface_evaluator.hpp"
+#include "toolkit/surface/input_error.hpp"
+
+namespace cinch {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// A body as the view draws it: triangles in the order of the BVH, so that a BV is a range of them, and the vertices that they use in
+// the order in which they do.
+struct DrawnBody {
+    explicit DrawnBody(const Input& body) : input(body), bvh(build_bvh(body.surface, ClusterSize{16, 16}))
+    {
+        constexpr std::uint32_t none = ~0u;
+        const TriangleMesh& mesh = body.surface.mesh;
+        std::vector<std::uint32_t> place(mesh.vertices.size(), none);
+        place_of_triangle.resize(mesh.triangles.size());
+        for (std::uint32_t t = 0; t < bvh.triangle.size(); ++t) {
+            place_of_triangle[bvh.triangle[t]] = t;
+            for (const std::uint32_t v : mesh.triangles[bvh.triangle[t]]) {
+                if (place[v] == none) {
+                    place[v] = static_cast<std::uint32_t>(vertex.size());
+                    vertex.push_back(v);
+                }
+                corner.push_back(place[v]);
+            }
+        }
+    }
+    std::uint32_t bvs(std::size_t levels) const { return bvh.level[std::min(levels, bvh.level.size() - 1)]; }
+
+    const Input& input;
+    Bvh bvh;
+    std::vector<std::uint32_t> vertex;            ///< of the mesh
+    std::vector<std::uint32_t> corner;            ///< 3 per triangle, in `vertex`
+    std::vector<std::uint32_t> place_of_triangle; ///< of the mesh, in the BVH's order
+};
+
+// Positions of all drawn vertices of all bodies, frame after frame; refuses those that are not finite.
+std::vector<std::vector<Vec3>> evaluate(const std::vector<DrawnBody>& bodies, std::size_t frames, const std::string& scene)
+{
+    std::vector<std::vector<Vec3>> all(frames);
+    for (const DrawnBody& body : bodies) {
+        const SurfaceEvaluator<double> evaluator(body.input.surface);
+        std::vector<Vec3> positions(body.input.surface.mesh.vertices.size());
+        for (std::size_t f = 0; f < frames; ++f) {
+            evaluator(body.input.clip.frames[f], positions);
+            for (const std::uint32_t v : body.vertex) {
+                if (!positions[v].allFinite())
+                    throw InputError::in_file(scene, fmt::format("{}: vertex {} is not finite in frame {}; it cannot be drawn", body.input.name, v, f));
+                all[f].push_back(positions[v]);
+            }
+        }
+    }
+    return all;
+}
+
+Grid grid_of(const std::vector<std::vector<Vec3>>& frames, int bits)
+{
+    Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+    for (const auto& frame : frames)
+        for (const Vec3& v : frame) {
+            low = low.cwiseMin(v);
+            high = high.cwiseMax(v);
+        }
+    return Grid::make(low, high, bits);
+}
+
+// The corners of all triangles of all bodies.
+std::vector<std::uint32_t> corners_of(const std::vector<DrawnBody>& bodies)
+{
+    std::vector<std::uint32_t> out;
+    std::uint32_t first = 0;
+    for (const DrawnBody& body : bodies) {
+        for (const std::uint32_t v : body.corner)
+            out.push_back(first + v);
+        first += static_cast<std::uint32_t>(body.vertex.size());
+    }
+    return out;
+}
+
+// As how far each lies below the next vertex not used yet: mostly 0 and little more.
+Json pack_corners(const std::vector<std::uint32_t>& corners)
+{
+    std::vector<std::int32_t> out;
+    std::uint32_t next = 0;
+    for (const std::uint32_t v : corners) {
+        out.push_back(static_cast<std::int32_t>(next - v));
+        next = std::max(next, v + 1);
+    }
+    return pack(out, out.size(), 1, 1);
+}
+
+Json pack_positions(const std::vector<std::vector<Vec3>>& frames, const Grid& grid, const std::vector<std::uint32_t>& corners)
+{
+    std::vector<std::int32_t> out;
+    out.reserve(frames.size() * frames[0].size() * 3);
+    for (const auto& frame : frames)
+        for (const Vec3& v : frame)
+            for (const std::int32_t x : grid.point(v))
+                out.push_back(x);
+    return pack(out, frames.size(), frames[0].size(), 3, parallelograms(corners, frames[0].size()));
+}
+
+// Where the maps take the rest positions of the simulation nodes, of the bodies that have some. What is not finite or far away is
+// drawn nowhere.
+Json pack_nodes(const std::vector<DrawnBody>& bodies, std::size_t frames, const Grid& grid)
+{
+    std::vector<std::int32_t> out;
+    for (std::size_t f = 0; f < frames; ++f)
+        for (const DrawnBody& body : bodies)
+            for (std::size_t j = 0; j < body.input.nodes.size(); ++j) {
+                const AffineMap& map = body.input.clip.frames[f][j];
+                const Vec3& x = body.input.nodes[j];
+                Vec3 p;
+                for (int r = 0; r < 3; ++r)
+                    p[r] = map.m[r][0] * x[0] + map.m[r][1] * x[1] + map.m[r][2] * x[2] + map.m[r][3];
+                const bool near = ((p / grid.step).array().abs() < 0x1p52).all();
+                const auto g = near ? grid.point(p) : std::array<std::int32_t, 3>{Grid::unbounded, Grid::unbounded, Grid::unbounded};
+                out.insert(out.end(), g.begin(), g.end());
+            }
+    return pack(out, frames, out.size() / 3 / frames, 3);
+}
+
+// The BVs of all bodies, level by level: in each, body by body.
+struct DrawnBvs {
+    std::vector<std::uint32_t> level = {0}, first, count, body; ///< first, count: triangles of all bodies
+    std::vector<std::uint32_t> bv;                              ///< in the body's BVH
+
+    DrawnBvs(const std::vector<DrawnBody>& bodies, std::size_t levels)
+    {
+        for (std::size_t l = 0; l < levels; ++l) {
+            std::uint32_t base = 0;
+            for (std::uint32_t b = 0; b < bodies.size(); ++b) {
+                const Bvh& bvh = bodies[b].bvh;
+                for (std::uint32_t i = bodies[b].bvs(l); i < bodies[b].bvs(l + 1); ++i) {
+                    first.push_back(base + bvh.bvs[i].first_triangle);
+                    count.push_back(bvh.bvs[i].triangle_count);
+                    body.push_back(b);
+                    bv.push_back(i);
+                }
+                base += static_cast<std::uint32_t>(bvh.triangle.size());
+            }
+            if (first.size() == level.back())
+                break;
+            level.push_back(static_cast<std::uint32_t>(first.size()));
+        }
+    }
+};
+
+// Bounds of the first `frames` frames by one method, on the grid.
+std::vector<std::int32_t> bounds_by(Method method, const ViewRequest& request, const std::vector<DrawnBody>& bodies, const DrawnBvs& bvs, const Grid& grid,
+                                    std::size_t frames)
+{
+    const auto k = static_cast<std::size_t>(request.kdop);
+    const auto axes = axes_of(request.kdop);
+    std::vector<std::int32_t> out(frames * bvs.bv.size() * k);
+    RefitOptions options;
+    options.methods = method;
+    options.kdop = request.kdop;
+    for (std::uint32_t b = 0; b < bodies.size(); ++b) {
+        Bounder bounder(bodies[b].bvh, bodies[b].input.surface, options, Bounder::Leaves::included);
+        std::vector<double> supports(bodies[b].bvs(bvs.level.size() - 1) * k);
+        for (std::size_t f = 0; f < frames; ++f) {
+            bounder.begin(bodies[b].input.clip.frames[f]);
+            parallel_blocks(supports.size() / k, 1, [&](std::size_t first, std::size_t last) {
+                bounder.bound(first, last, std::span(supports).subspan(first * k, (last - first) * k));
+            });
+            for (std::size_t i = 0; i < bvs.bv.size(); ++i)
+                for (std::size_t d = 0; bvs.body[i] == b && d < k; ++d)
+                    out[(f * bvs.bv.size() + i) * k + d] = grid.support(axes[d / 2], d % 2 == 1, supports[bvs.bv[i] * k + d]);
+        }
+    }
+    return out;
+}
+
+// The triangles of each frame that intersect one of another body, ascending, frames one after the other; and how many pairs.
+struct Contacts {
+    std::vector<std::int32_t> triangle, triangles_in_frame, pairs_in_frame;
+};
+
+Contacts contacts(const std::vector<DrawnBody>& bodies, std::size_t frames)
+{
+    Contacts out;
+    if (bodies.size() < 2)
+        return out;
+    Collider collider{LazyOptions{}};
+    std::vector<std::uint32_t> base{0};
+    for (const DrawnBody& body : bodies) {
+        collider.add(body.bvh, body.input.surface);
+        base.push_back(base.back() + static_cast<std::uint32_t>(body.bvh.triangle.size()));
+    }
+    std::vector<BodyFrame> now(bodies.size());
+    for (std::size_t f = 0; f < frames; ++f) {
+        for (std::size_t b = 0; b < bodies.size(); ++b)
+            now[b] = {bodies[b].input.clip.frames[f]};
+        collider.update(now);
+        const std::vector<TrianglePair> pairs = collider.pairs();
+        std::vector<std::int32_t> here;
+        auto add = [&](std::uint32_t body, std::uint32_t triangle) { here.push_back(static_cast<std::int32_t>(base[body] + bodies[body].place_of_triangle[triangle])); };
+        for (const TrianglePair& p : pairs) {
+            add(p.body_a, p.triangle_a);
+            add(p.body_b, p.triangle_b);
+        }
+        std::sort(here.begin(), here.end());
+        here.erase(std::unique(here.begin(), here.end()), here.end());
+        out.triangle.insert(out.triangle.end(), here.begin(), here.end());
+        out.triangles_in_frame.push_back(static_cast<std::int32_t>(here.size()));
+        out.pairs_in_frame.push_back(static_cast<std::int32_t>(pairs.size()));
+    }
+    return out;
+}
+
+Json shown_first(const ViewRequest& request, std::size_t frames, std::size_t levels)
+{
+    return {{"method", name_of(request.method)}, {"level", std::min(request.level, levels - 1)},
+            {"frame", static_cast<std::size_t>(std::llround(std::clamp(request.time, 0.0, 1.0) * static_cast<double>(frames - 1)))},
+            {"surface", request.surface}, {"nodes", request.show_nodes}, {"bounds", request.show_bounds}, {"azimuth", request.azimuth}, {"elevation", request.elevation}};
+}
+
+void require_valid(const ViewRequest& request)
+{
+    if (request.frames < 1 || request.levels < 1 || request.bits < 8 || request.bits > 16 || !is_kdop(request.kdop) || request.methods.empty())
+        throw std::invalid_argument("view: frames and levels of at least 1, 8 to 16 bits, k = 6, 14, 18 or 26, and a method are needed");
+    if (std::find(request.methods.begin(), request.methods.end(), request.method) == request.methods.end())
+        throw std::invalid_argument("view: the method shown first is not among the methods");
+}
+
+} // namespace
+
+nlohmann::ordered_json make_view(const ViewRequest& request)
+{
+    require_valid(request);
+    InputOptions what;
+    what.input = request.scene;
+    what.first_frame = request.frames > 1 && is_scene(request.scene);
+    what.frames = request.frames - (what.first_frame ? 1 : 0);
+    what.nodes = request.nodes;
+    what.seed = request.seed;
+    const Inputs inputs = load_inputs(what);
+
+    std::vector<DrawnBody> bodies;
+    bodies.reserve(inputs.bodies.size());
+    for (const Input& body : inputs.bodies)
+        bodies.emplace_back(body);
+    const std::vector<double>& times = inputs.bodies[0].clip.time_s;
+    const std::size_t frames = times.size();
+    const DrawnBvs bvs(bodies, request.levels);
+    Json view{{"experiment", "view"}, {"title", request.title.empty() ? inputs.name : request.title}, {"text", request.text}, {"scene", request.scene}};
+    view["first"] = shown_first(request, frames, bvs.level.size() - 1);
+    view["time_s"] = times;
+    view["bodies"] = Json::array();
+    for (const DrawnBody& body : bodies)
+        view["bodies"].push_back({{"name", body.input.name}, {"vertices", body.vertex.size()}, {"triangles", body.bvh.triangle.size()},
+                                  {"nodes", body.input.surface.weights.node_count}, {"drawn_nodes", body.input.nodes.size()}});
+    view["kdop"] = request.kdop;
+    view["bvs"] = {{"level", bvs.level}, {"first", bvs.first}, {"count", bvs.count}};
+    {
+        const auto positions = evaluate(bodies, frames, request.scene);
+        const Grid grid = grid_of(positions, request.bits);
+        view["step"] = grid.step;
+        view["origin"] = grid.origin;
+        const std::vector<std::uint32_t> corners = corners_of(bodies);
+        view["corners"] = pack_corners(corners);
+        view["positions"] = pack_positions(positions, grid, corners);
+        view["nodes"] = pack_nodes(bodies, frames, grid);
+        view["bounds"] = Json::object();
+        Progress progress(fmt::format("{}: bounds for the view", request.scene), request.methods.size());
+        std::size_t done = 0;
+        for (const Method method : request.methods) {
+            if (interrupted() && done > 0)
+                break;
+            view["bounds"][std::string(name_of(method))] = pack(bounds_by(method, request, bodies, bvs, grid, frames), frames, bvs.bv.size(), static_cast<std::size_t>(request.kdop));
+            progress.done(++done);
+        }
+    }
+    const Contacts found = contacts(bodies, frames);
+    if (!found.pairs_in_frame.empty())
+        view["contacts"] = {{"pairs", found.pairs_in_frame}, {"count", found.triangles_in_frame}, {"triangles", pack(found.triangle, 1, found.triangle.size(), 1)}};
+    return view;
+}
+
+std::vector<ViewRequest> report_views()
+{
+    ViewRequest brain;
+    brain.scene = "brain-pull";
+    brain.title = "Fig. 1: a brain, pulled";
+    brain.text = "30,000 vertices follow 509 simulation nodes. The outer box is the bound, in time linear in the nodes; the inner one is the vertices' own. "
+                 "Deeper levels have smaller boxes, and more axes make k-DOPs of them.";
+    brain.levels = 7;
+    brain.kdop = 26;
+    brain.bits = 14;
+    brain.level = 0;
+    brain.time = 0.6; // the pull is at its end
+    brain.surface = "glass";
+    brain.show_nodes = true;
+    brain.azimuth = -55; // the pull goes to the right
+    brain.elevation = 14;
+    ViewRequest ring;
+    ring.scene = "santa-ring-6";
+    ring.title = "Fig. 6: six bodies on a ring";
+    ring.text = "A ring that swings holds them at their tops. Triangles that intersect are red.";
+    ring.levels = 5;
+    ring.kdop = 14;
+    ring.bits = 14;
+    ring.level = 1;
+    ring.time = 0.55;
+    ViewRequest fishes;
+    fishes.scene = "fishes";
+    fishes.title = "Fig. 7: 24 fish";
+    fishes.text = "They have 192,000 vertices that follow 2,304 simulation nodes. Triangles that intersect are red.";
+    fishes.frames = 24;
+    fishes.levels = 5;
+    fishes.bits = 14;
+    fishes.methods = {Method::best, Method::limited, Method::eq12, Method::sphere, Method::convex};
+    fishes.level = 0;
+    fishes.elevation = 45;
+    return {brain, ring, fishes};
+}
+
+} // namespace cinch
