@@ -172,7 +172,7 @@ void add_view(CLI::App& app, ViewOptions& o)
                            fmt::join(shipped_scenes(), ", "), fmt::join(shape_names(), ", ")))
             ->option_text("");
     option("--report", o.report, "the page to write; it needs nothing else, and no network")->option_text("FILE.html");
-    command.add_flag("--json", o.json, "the views as JSON Lines on standard output and nothing else");
+    command.add_flag("--json", o.json, wrapped("the views as JSON Lines on standard output and nothing else"));
     option("--frames", o.request.frames, "how many at most, evenly spread, the first and the last included [60]")->check(CLI::Range(1, 10000))->option_text("N")->needs(scene);
     option("--levels", o.request.levels, "levels of the BVH, from the root [8]")->check(CLI::Range(1, 16))->option_text("N")->needs(scene);
     option("--kdop", o.request.kdop, "greatest k to choose from on the page: 6, 14, 18 or 26 [6]")->check(CLI::IsMember({6, 14, 18, 26}))->option_text("K")->needs(scene);
@@ -238,7 +238,7 @@ void add_report(CLI::App& app, ReportOptions& o)
                    "  cinch report results\n"
                    "  cinch report results --page paper.html\n"
                    "\n"
-                   "Exit status: 0 done, 1 a file is damaged (the page has the rest), 2 bad usage, or\n"
+                   "Exit status: 0 done, 1 a file is damaged (the page has the rest), 2 bad usage or\n"
                    "no results.");
 }
 

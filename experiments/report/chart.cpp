@@ -17,7 +17,7 @@ namespace {
 
 // Okabe and Ito's colours, which differ for everyone, and marks that differ without colour.
 constexpr std::array colours{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#8c564b", "#7f7f7f", "#b8a900"};
-constexpr std::array marks{7, 5, 9, 11, 13, 6, 4, 8, 10, 12};
+constexpr std::array marks{7, 5, 9, 11, 13, 6, 4, 8, 10}; // one fewer, so that the eleventh colour has another
 
 // In single quotes nothing is special but the quote itself, and the end of the line.
 std::string quoted(const std::string& text)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""reproduce_test.py PROGRAM FOLDER: a quick run that is killed continues, gives a page whose figures all lead to a line, and survives damage."""
+"""reproduce_test.py PROGRAM FOLDER: a quick run that is stopped and killed continues, gives a page whose figures all lead to a line, and survives damage."""
 
 import html.parser
 import json
@@ -39,9 +39,19 @@ def main():
     shutil.rmtree(folder, ignore_errors=True)
     command = [program, "reproduce", "--quick", "--out", str(folder)]
 
+    # Ctrl-C in the first experiment: a page that says what is missing, and nothing that is not whole.
+    run = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    while run.poll() is None and not (folder / "scaling.part").exists():
+        time.sleep(0.02)
+    run.send_signal(signal.SIGINT)
+    _, err = run.communicate()
+    assert run.returncode == 130 and "the same command continues" in err, (run.returncode, err)
+    assert sorted(file.name for file in folder.iterdir() if file.name != ".lock") == ["report.html"]
+    assert "Not run yet:" in (folder / "report.html").read_text()
+
     # Killed outright while the second experiment runs.
     run = subprocess.Popen(command, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
-    while run.poll() is None and not (folder / "tightness.part").exists():
+    while run.poll() is None and not ((folder / "scaling.jsonl").exists() and list(folder.glob("*.part"))):
         time.sleep(0.02)
     run.send_signal(signal.SIGKILL)
     run.wait()

@@ -227,7 +227,7 @@ TEST_CASE("what is not named is said to be left out")
     REQUIRE(run.status == 0);
     std::string text = run.out;
     std::replace(text.begin(), text.end(), '\n', ' ');
-    CHECK(text.find("never constructed: pulling volume plasticity damping ground scripted") != std::string::npos);
+    CHECK(text.find("never constructed: pulling volume plasticity damping ground contact scripted") != std::string::npos);
     for (const std::string& line : run.lines())
         CHECK(line.size() <= 80);
 }

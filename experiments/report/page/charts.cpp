@@ -114,7 +114,7 @@ std::vector<ChartFigure> cost_charts(const Results& results)
     for (const Record* r : results.where({{"experiment", "cost"}, {"kdop", 6}}))
         if (!r->word("arithmetic").empty()) {
             const std::string what = r->word("input");
-            ChartFigure& chart = charts.at({"What accuracy costs: " + what + ", 6-DOP", "ns per BV", "bound radius / true radius", true, false, {}},
+            ChartFigure& chart = charts.at({"What accuracy costs: " + what + ", 6-DOP", "ns per BV", "bound radius / true radius", true, true, {}},
                                            fmt::format("Every method in every arithmetic: looseness against time, {}, six directions, one core. Lower left is better.", escaped(what)));
             Charts::point(chart, r->word("arithmetic"), r->number("ns_per_bound"), r->number("mean_ratio"), r->at, true);
         }

@@ -132,7 +132,7 @@ std::string block(const std::vector<std::string>& rows, const char* css)
 
 std::string table(const std::string& caption, const std::vector<std::string>& head_rows, const std::vector<std::string>& blocks)
 {
-    return fmt::format("<div class=\"table\"><table>\n<caption>{}</caption>\n<thead>\n{}</thead>\n{}</table></div>\n", caption, all_of(head_rows), all_of(blocks));
+    return fmt::format("<div class=\"table\"><table>\n<caption><div>{}</div></caption>\n<thead>\n{}</thead>\n{}</table></div>\n", caption, all_of(head_rows), all_of(blocks));
 }
 
 std::string verdict(Verdict is, const std::string& sentence)
@@ -142,7 +142,7 @@ std::string verdict(Verdict is, const std::string& sentence)
 
 std::string conclusion(std::size_t columns, Verdict is, const std::string& sentence)
 {
-    return fmt::format("<tr class=\"why\"><td colspan=\"{}\">{}</td></tr>\n", columns, verdict(is, sentence));
+    return fmt::format("<tr class=\"why\"><td colspan=\"{}\"><div>{}</div></td></tr>\n", columns, verdict(is, sentence));
 }
 
 std::string claim(const std::string& says, const char* where, Verdict is, const std::string& sentence)

@@ -32,14 +32,14 @@ std::string runs(const Results& results)
     for (const Record* r : totals(results)) {
         auto number = [&](const char* field) { return Results::number(*r, field); };
         const std::string update = r->word("update");
-        rows.push_back(html::row({html::text_cell(r->word("input"), "l"), html::text_cell(update.empty() ? "all BVs by the methods" : "after a collision query, " + update, "l"), html::text_cell(r->word("method"), "l"),
+        rows.push_back(html::row({html::text_cell(r->word("input"), "l"), html::text_cell(update.empty() ? "all BVs, by the method" : "after a query, " + update, "l"), html::text_cell(r->word("method"), "l"),
                                   html::text_cell(r->word("precision"), "l"), cell(number("frames")), html::raw_cell(count(number("bounds")), "n"), html::raw_cell(count(number("proven")), "n"),
                                   html::raw_cell(count(number("violated")), "n"), cell(number("seconds"))}));
     }
     if (rows.empty())
         return "";
     return html::table("Every bound of every BV, direction and frame against the exactly deformed vertices, in exact arithmetic.",
-                       {html::row({head_cell("input"), head_cell("bounds"), head_cell("method"), head_cell("precision"), head_cell("frames"), head_cell("bounds"), head_cell("proven"), head_cell("violated"), head_cell("seconds")})},
+                       {html::row({head_cell("input"), head_cell("which"), head_cell("method"), head_cell("precision"), head_cell("frames"), head_cell("bounds"), head_cell("proven"), head_cell("violated"), head_cell("seconds")})},
                        {html::block(rows)});
 }
 
@@ -71,11 +71,11 @@ std::string corners(const Results& results)
 {
     std::vector<std::string> rows;
     for (const Record* r : results.where({{"experiment", "corners"}})) {
-        const std::string counted_corners = r->word("vertex_count"), reason = r->word("vertex_count_reason");
+        const std::string counted_corners = r->word("vertex_count");
         const bool feasible = r->fields.contains("feasible") && r->fields.at("feasible") == true;
         const Traced n = Results::number(*r, "n");
-        rows.push_back(html::row({html::text_cell(r->word("file"), "l"), cell(n), html::text_cell(feasible ? "yes" : "no, no weights sum to 1", "l"),
-                                  html::raw_cell(figure({0, {r->at}}, counted_corners.empty() ? (reason.empty() ? "–" : reason) : counted_corners), "n"),
+        rows.push_back(html::row({html::text_cell(r->word("file"), "l"), cell(n), html::text_cell(feasible ? "yes" : "no", "l"),
+                                  html::raw_cell(figure({0, {r->at}}, counted_corners.empty() ? "not counted" : counted_corners), "n"),
                                   html::raw_cell(n.known() ? figure(n * (n - Traced{1, {}})) : "–", "n")}));
     }
     if (rows.empty())
@@ -84,7 +84,7 @@ std::string corners(const Results& results)
     return "<h3>True corners</h3>\n" +
            html::paragraph(fmt::format("Of {} maxima over the exact corners of {} weight spaces the toolkit’s bound holds for {}; Eq. 12 is the exact maximum for {}, and above it for the others.", figure(sums.rows), figure(sums.cases),
                                        figure(sums.hold), figure(sums.exact))) +
-           html::table("Corners of the limited convex weight space, counted exactly, beside the n(n − 1) that the paper chooses from.",
+           html::table("Corners of the limited convex weight space, counted exactly, beside the n(n − 1) that the paper chooses from. Not feasible: no weights within the intervals sum to 1, so there are none.",
                        {html::row({head_cell("case"), head_cell("n"), head_cell("feasible"), head_cell("corners"), head_cell("n(n − 1)")})}, {html::block(rows)});
 }
 

@@ -104,9 +104,10 @@ std::string provenance_section(const Results& results)
     for (const Run& run : runs) {
         const Record& r = *run.first;
         const Record* closing = run.closing;
+        const std::size_t threads = r.number("threads") > 0 ? static_cast<std::size_t>(std::min(r.number("threads"), 1e6)) : 0;
         rows.push_back(html::row({html::raw_cell(fmt::format("<a class=\"f\" href=\"#{}\">{}.jsonl</a>, {}–{}", escaped(html::anchor(r.at)), escaped(r.at.file), r.at.line, run.last), "l"),
                                   html::raw_cell("<code>" + escaped(r.word("command")) + "</code>", "l"), html::cell(Results::number(r, "seed")), html::raw_cell("<code>" + escaped(r.word("commit")) + "</code>"),
-                                  html::text_cell(fmt::format("{}, {}, {}", r.word("cpu"), r.word("simd_target"), counted(static_cast<std::size_t>(std::clamp(r.number("threads"), 0.0, 1e6)), "thread", "threads"))),
+                                  html::text_cell(fmt::format("{}, {}, {}", r.word("cpu"), r.word("simd_target"), counted(threads, "thread", "threads"))),
                                   closing ? html::cell(Results::number(*closing, "seconds"), duration(closing->number("seconds"))) : html::text_cell(""),
                                   html::text_cell(closing ? closing->word("finished") : "")}));
     }

@@ -61,8 +61,7 @@ summary { cursor: pointer; }
   main { padding: 1.4rem 1rem 3rem; }
   h1 { font-size: 1.55rem; }
   th, td { padding: .28rem .5rem; }
-  tr.why td { max-width: calc(100vw - 2rem); }
-  tr.why td { position: sticky; left: 0; display: block; width: calc(100vw - 2rem); }
+  tr.why td > div, caption > div { position: sticky; left: 0; width: calc(100vw - 3rem); }
 }
 @media print {
   @page { margin: 18mm 15mm; }
