@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/view.hpp"
 
+#include <filesystem>
 #include <fstream>
 
 #include <fmt/format.h>
@@ -17,10 +18,13 @@ int view(const ViewOptions& options)
 {
     const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
-    std::ofstream file(options.report, std::ios::binary | std::ios::app); // nothing is lost if it cannot be written, or loading fails
+    const bool there = std::filesystem::exists(options.report);
+    std::ofstream file(options.report, std::ios::binary | std::ios::app); // what was there is kept until all is done
     if (!file)
         throw InputError::in_file(options.report, "cannot be written");
     file.close();
+    if (!there)
+        std::filesystem::remove(options.report);
     catch_interrupt();
     std::vector<nlohmann::ordered_json> views;
     for (const ViewRequest& request : options.request.scene.empty() ? report_views() : std::vector{options.request})
