@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/view.hpp"
 
+#include <filesystem>
 #include <fstream>
 
 #include <fmt/format.h>
@@ -21,11 +22,14 @@ int view(const ViewOptions& options)
     if (options.report.empty() && !options.json)
         throw InputError("view: --report FILE.html or --json is needed");
     std::ofstream file;
-    if (!options.report.empty()) { // nothing is lost if it cannot be written, or loading fails
+    if (!options.report.empty()) { // what was there is kept until all is done
+        const bool there = std::filesystem::exists(options.report);
         file.open(options.report, std::ios::binary | std::ios::app);
         if (!file)
             throw InputError::in_file(options.report, "cannot be written");
         file.close();
+        if (!there)
+            std::filesystem::remove(options.report);
     }
     catch_interrupt();
     RecordOutput output({options.json, false, {}, {}}, provenance(threads, options.request.seed));

@@ -42,11 +42,16 @@ class View:
         browser.run("document.getElementById(arguments[0]).scrollIntoView()", name)
         state = browser.wait("const s = document.getElementById(arguments[0]).dataset.state; return s === 'loading' ? '' : s", name)
         check(state == "ready", f"{name}: {state}")
-        browser.run("""const style = document.createElement('style'); // what is written over the canvas is no picture
-            style.textContent = '.view-info, .view-legend { visibility: hidden }';
+        browser.run("""const style = document.createElement('style'); // what is written over the canvas, and the sign of the focus, are no picture
+            style.textContent = '.view-info, .view-legend { visibility: hidden } .view canvas { outline: none !important }';
             document.head.append(style)""")
 
     def picture(self):
+        """Of the canvas and nothing else: it is all in the window."""
+        inside = self.browser.run("const c = document.querySelector(arguments[0]); c.scrollIntoView({block: 'center', behavior: 'instant'});"
+                                  "const r = c.getBoundingClientRect(); return r.top >= 0 && r.bottom <= innerHeight", self.at + " canvas")
+        if not inside:
+            raise AssertionError(f"{self.name}: the canvas does not fit into the window")
         self.browser.settle()
         return self.browser.picture(self.at + " canvas")
 
@@ -65,16 +70,27 @@ class View:
         """act() changes the picture (and with `text` what is written); back() restores it."""
         before, said = self.picture(), self.info()
         act()
-        check(self.picture() != before, f"{self.name}: {what} changes the picture")
+        check(self.soon(lambda: self.picture() != before), f"{self.name}: {what} changes the picture")
         if text:
             check(self.info() != said, f"{self.name}: {what} changes what is written")
         if back:
             back()
-            check(self.picture() == before, f"{self.name}: and the way back restores it")
+            check(self.soon(lambda: self.picture() == before), f"{self.name}: {what}, and the way back restores it")
+
+    def soon(self, holds):
+        """Software draws slowly."""
+        return any(holds() or time.sleep(0.2) for _ in range(10))
 
     def slide(self, control, share):
         """Clicks on a slider where it means this share of its range."""
         self.browser.click_within(f"{self.at} .view-controls input[name={control}]", share)
+
+    def slide_back(self, frame):
+        """To the middle, and from there by keys: a pixel may be a frame."""
+        self.slide("frame", 0.5)
+        off = int(self.value("frame")) - frame
+        check(abs(off) <= 1, f"{self.name}: the frame slider goes where it is clicked")
+        self.browser.keys((LEFT if off > 0 else RIGHT) * abs(off))
 
     def choose(self, control, value):
         """By keyboard, in the closed list."""
@@ -96,7 +112,8 @@ class View:
         check(self.picture() == self.picture(), f"{self.name}: two pictures of the same are the same")
         levels = b.run("return Number(document.getElementById(arguments[0]).querySelector('input[name=level]').max)", self.name)
         self.slide("frame", 0.5)
-        self.changes("the frame slider", lambda: self.slide("frame", 0.97), lambda: self.slide("frame", 0.5))
+        here = int(self.value("frame"))
+        self.changes("the frame slider", lambda: self.slide("frame", 0.97), lambda: self.slide_back(here))
         if levels > 0:
             self.slide("level", 0)
             self.changes("the level slider", lambda: self.slide("level", 1), lambda: self.slide("level", 0))

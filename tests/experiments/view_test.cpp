@@ -253,5 +253,6 @@ TEST_CASE("cinch view says what is wrong in one line")
     refused("brain-3500 --methods nothing" + page, "expected names of convex");
     refused("brain-3500 --methods vertices" + page, "expected names of convex");
     refused("--frames 5" + page, "--frames");
+    CHECK(std::filesystem::is_empty(folder.path()));
     CHECK_THROWS_AS(make_view(request("nothing", 5)), InputError);
 }
