@@ -152,7 +152,7 @@ void add_collide(CLI::App& app, CollideOptions& o)
     }
     command.footer(about + "\n"
                    "Examples:\n"
-                   "  cinch collide                          everything, about eight minutes\n"
+                   "  cinch collide                          everything, about eleven minutes\n"
                    "  cinch collide santa-ring-3 --backends cinch,refit-16,embree\n"
                    "  cinch collide fishes --json > fishes.jsonl\n"
                    "  cinch collide santa-ring-7 --cold --plot cold.svg\n"

@@ -171,7 +171,7 @@ std::vector<Figure> figures_of(const std::vector<SceneResult>& results, bool col
             ratio(r.scene + ": own full refit, 16 / cinch", refit->total_ms / own->total_ms, share * over_refit[n - 1]);
         if (refit && full) {
             const double worst = worst_quarter(r, *own, {refit, full});
-            figures.push_back({r.scene + ": cinch / best full refit, worst quarter", times(worst), "<= 1.1", worst <= 1.1});
+            figures.push_back({r.scene + ": cinch / full refit, worst 1/4", times(worst), "<= 1.1", worst <= 1.1});
         }
         if (n && r.vertices > 40000)
             figures.push_back({r.scene + ": MB per body", fmt::format("{:.1f}", own->megabytes), "<= 16", own->megabytes <= 16});
