@@ -82,7 +82,7 @@ void print_table_4(const std::vector<SceneResult>& results)
     }
     if (rows.empty())
         return;
-    fmt::print("The paper's method, Eq. 12 with one triangle per leaf, ms (Table 4): AABB/AABB, then\nOBB/14-DOP; gain over refit-1, here and in the paper\n\n{}\n",
+    fmt::print("The paper's method, Eq. 12 with one triangle per leaf, ms (Table 4): AABB/AABB,\nthen OBB/14-DOP; gain over refit-1, here and in the paper\n\n{}\n",
                table({"scene", "refit", "query", "total", "gain", "paper", "refit", "query", "total", "gain", "paper"}, rows));
 }
 
@@ -113,7 +113,7 @@ void print_counts(const std::vector<SceneResult>& results)
     }
     if (rows.empty())
         return;
-    fmt::print("What '{}' did, means per frame; triangle pairs decided in float, double, exactly, %\n\n{}\n", results[0].backends[0].backend,
+    fmt::print("What '{}' did, means per frame; triangle pairs decided in float, double,\nexactly, %\n\n{}\n", results[0].backends[0].backend,
                table({"scene", "bounds", "leaves", "vertices", "boxes", "leaf p.", "triangles", "float", "double", "exact"}, rows));
 }
 
@@ -221,8 +221,7 @@ void print_tables(const std::vector<SceneResult>& results, bool cold)
     print_table_4(results);
     for (const SceneResult& r : results)
         print_backends(r);
-    fmt::print("times: the total over that of '{}'; differ: pairs that only one of the two found.\nevaluate: all vertices up front, by SIMD with the bits of the exact test; '-' where\n"
-               "they are evaluated on demand. {}\n\n",
+    fmt::print("times: the total over that of '{}'; differ: pairs that only one of the two\nfound. evaluate: all vertices up front, by SIMD with the bits of the exact test;\n'-' where they are evaluated on demand. {}\n\n",
                results[0].backends[0].backend, cold ? "Caches evicted before every frame." : "Every backend runs through all frames in turn.");
     print_counts(results);
     if (const auto figures = figures_of(results, cold); !figures.empty()) {
