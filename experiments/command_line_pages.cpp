@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The commands whose results are pages.
+#include <fmt/format.h>
+
+#include "experiments/command_line.hpp"
+#include "experiments/simulation/find_scene.hpp"
+#include "toolkit/surface/shapes.hpp"
+
+namespace cinch {
+
+void add_view(CLI::App& app, ViewOptions& o)
+{
+    CLI::App& command = *app.add_subcommand("view", "a page to look at: surface, nodes, bounds (Figs. 1, 6, 7)");
+    auto option = [&](const char* name, auto& value, const std::string& description) { return command.add_option(name, value, wrapped(description)); };
+    CLI::Option* scene =
+        option("SCENE", o.request.scene,
+               fmt::format("a scene ({}, or a .json file), a shape ({}), a mesh or a skinned character [the paper's figures: brain-pull, santa-ring-6 and fishes]",
+                           fmt::join(shipped_scenes(), ", "), fmt::join(shape_names(), ", ")))
+            ->option_text("");
+    option("--report", o.report, "the page to write; it needs nothing else, and no network")->option_text("FILE.html");
+    command.add_flag("--json", o.json, wrapped("the views as JSON Lines on standard output and nothing else"));
+    option("--frames", o.request.frames, "how many at most, evenly spread, the first and the last included [60]")->check(CLI::Range(1, 10000))->option_text("N")->needs(scene);
+    option("--levels", o.request.levels, "levels of the BVH, from the root [8]")->check(CLI::Range(1, 16))->option_text("N")->needs(scene);
+    option("--kdop", o.request.kdop, "greatest k to choose from on the page: 6, 14, 18 or 26 [6]")->check(CLI::IsMember({6, 14, 18, 26}))->option_text("K")->needs(scene);
+    command.add_option_function<std::vector<std::string>>("--methods", [&o](const std::vector<std::string>& names) {
+        o.request.methods.clear();
+        for (const std::string& name : names) {
+            const auto method = named_method(name);
+            if (!method || *method == Method::vertices)
+                throw CLI::ValidationError("--methods", fmt::format("expected names of {}, found '{}'", fmt::join(std::span(method_names).first(9), ", "), name));
+            o.request.methods.push_back(*method);
+        }
+        o.request.method = o.request.methods.front();
+    }, wrapped("to choose from on the page, the first one shown first [all; best]; beside each, the vertices' own bound"))->delimiter(',')->option_text("NAME,...")->needs(scene);
+    option("--bits", o.request.bits, "of the grid that positions are rounded to [16]; fewer make a smaller page")->check(CLI::Range(8, 16))->option_text("N")->needs(scene);
+    option("--nodes", o.request.nodes, "simulation nodes per body, where they are sampled [as usual]")->check(CLI::Range(1, 100000))->option_text("N")->needs(scene);
+    option("--seed", o.request.seed, "seed of everything random [0]")->option_text("N");
+    command.add_option_function<std::vector<double>>("--camera", [&o](const std::vector<double>& degrees) {
+        o.request.azimuth = degrees[0];
+        o.request.elevation = degrees[1];
+    }, wrapped("where it is at first: degrees from +x towards +y, and up [35,20]"))->delimiter(',')->expected(2)->option_text("A,E")->needs(scene);
+    option("--threads", o.threads, "threads [all cores]; the page is the same")->check(CLI::Range(1, 1024))->option_text("N");
+    command.footer("Examples:\n"
+                   "  cinch view --report figures.html      Figs. 1, 6 and 7, about a minute\n"
+                   "  cinch view brain-pull --report brain.html --kdop 26\n"
+                   "  cinch view santa-ring-6 --report ring.html --methods best,eq12,convex\n"
+                   "  cinch view fishes --report fishes.html --frames 30 --levels 5 --bits 14\n"
+                   "  cinch view robot.glb --report robot.html\n"
+                   "\n"
+                   "Bounds are rounded outward to the grid of the vertices, so that what is drawn\n"
+                   "of a bound contains what is drawn of the surface.\n"
+                   "Exit status: 0 done, 2 bad usage or input, 130 interrupted (the page has the\n"
+                   "views and methods that were done).");
+}
+
+void add_reproduce(CLI::App& app, ReproduceOptions& o)
+{
+    CLI::App& command = *app.add_subcommand("reproduce", "all of the paper's tables and figures, as a page");
+    command.add_flag("--quick", o.quick, wrapped("fewer scenes, frames and repetitions: under three minutes on two cores, instead of under 45"));
+    command.add_option("--out", o.out, wrapped("folder for the results and report.html [results]"))->option_text("DIR");
+    command.add_option("--seed", o.seed, wrapped("seed of everything random [0]"))->option_text("N");
+    command.footer("Runs the experiments that are not in DIR yet, for this commit and these options,\n"
+                   "each by a command of this program, whose JSON Lines become DIR/NAME.jsonl. Then\n"
+                   "writes DIR/report.html: the paper's figures beside these, one file to send\n"
+                   "around. Stopped or killed, the same command continues.\n"
+                   "\n"
+                   "Examples:\n"
+                   "  cinch reproduce --quick --out quick    a first look\n"
+                   "  cinch reproduce                        everything\n"
+                   "  cinch report results                   the page again\n"
+                   "\n"
+                   "Exit status: 0 done, 1 an experiment failed or a stored result is damaged (the\n"
+                   "rest is done), 2 bad usage, 130 interrupted (what is finished is kept).");
+}
+
+void add_report(CLI::App& app, ReportOptions& o)
+{
+    CLI::App& command = *app.add_subcommand("report", "the page of 'cinch reproduce', from stored results");
+    command.add_option("DIR", o.folder, wrapped("folder that 'cinch reproduce --out DIR' wrote"))->required()->option_text("");
+    command.add_option("--page", o.page, wrapped("file to write [DIR/report.html]"))->option_text("FILE.html");
+    command.footer("A file that is truncated or damaged is named, with the line, and left out.\n"
+                   "\n"
+                   "Examples:\n"
+                   "  cinch report results\n"
+                   "  cinch report results --page paper.html\n"
+                   "\n"
+                   "Exit status: 0 done, 1 a file is damaged (the page has the rest), 2 bad usage or\n"
+                   "no results.");
+}
+
+} // namespace cinch
