@@ -146,7 +146,7 @@ TEST_CASE("scenes of one body: pairs of brute force with itself some time before
     const auto options = some_options();
     for (const char* scene : {"beam", "sheet", "skin", "twist-180", "brain-pull-65", "brain-pull-225", "brain-pull"}) {
         INFO(scene);
-        CHECK(check_all(against_its_past(simulated(scene, 0, quick ? 25 : 61, 12)), thorough ? options : std::vector{options[0]}) > 100);
+        CHECK(check_all(against_its_past(simulated(scene, 0, quick ? 25 : 61, 12)), thorough ? options : std::vector{options[0]}) > (quick ? 50u : 100u));
         if (!thorough && std::string(scene) == "brain-pull-65")
             break;
     }
