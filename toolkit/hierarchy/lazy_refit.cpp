@@ -13,6 +13,7 @@
 #include "toolkit/bounds/rounding.hpp"
 #include "toolkit/deform/arithmetic.hpp"
 #include "toolkit/deform/parallel.hpp"
+#include "toolkit/surface/length.hpp"
 
 namespace cinch {
 namespace {
@@ -43,7 +44,7 @@ LazyRefit::LazyRefit(const Bvh& bvh, const DeformableSurface& surface, const Laz
     std::uint32_t leaf = 0;
     for (std::size_t i = 0; i < links_.size(); ++i) {
         const Bv& bv = bvh.bvs[i];
-        const auto size = static_cast<float>(std::min(bv.box.half.stableNorm(), 1e38));
+        const auto size = static_cast<float>(std::min(length(bv.box.half), 1e38));
         links_[i] = bv.is_leaf() ? Link{leaf++, -1 - size, 0} : Link{bv.first_child, size, 0};
     }
     slot_of_.assign(leaves_.leaves.size(), no_slot);

@@ -8,6 +8,7 @@
 #include "toolkit/deform/dyadic.hpp"
 #include "toolkit/deform/parallel.hpp"
 #include "toolkit/hierarchy/rest_data.hpp"
+#include "toolkit/surface/length.hpp"
 
 namespace cinch {
 namespace {
@@ -100,7 +101,7 @@ double distance_to_hull(const Vec3& x, std::span<const Vec3> hull, double enough
         most = std::max(most, hull[i].lpNorm<Eigen::Infinity>());
     }
     const double n = static_cast<double>(hull.size());
-    return succ((x - sum).stableNorm() + (4 * (n + 8) * unit_roundoff * most + n * smallest_subnormal));
+    return succ(length(x - sum) + (4 * (n + 8) * unit_roundoff * most + n * smallest_subnormal));
 }
 
 // Greedy: for every triangle of the net the best point p so far leaves max_i (h(u_i) − u_i·p), h the support of all vertices, which

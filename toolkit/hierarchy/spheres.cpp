@@ -6,6 +6,7 @@
 
 #include "toolkit/bounds/rounding.hpp"
 #include "toolkit/deform/parallel.hpp"
+#include "toolkit/surface/length.hpp"
 
 namespace cinch {
 
@@ -57,12 +58,12 @@ RestSpheres rest_spheres(const Bvh& bvh, const DeformableSurface& surface)
             each_vertex([&](SphereInfluence& j, double w, const Vec3& y) {
                 j.weight_spread = std::max(j.weight_spread, std::abs(w - j.mean)); // dyadic: exact
                 // y, the product, the difference and the norm pass fewer than 8 roundings.
-                const double spread = (w * y - j.moment).stableNorm(), slop = 16 * unit_roundoff * (w * y.lpNorm<1>() + j.moment.lpNorm<1>());
+                const double spread = length(w * y - j.moment), slop = 16 * unit_roundoff * (w * y.lpNorm<1>() + j.moment.lpNorm<1>());
                 j.moment_spread = std::max(j.moment_spread, succ(spread + slop));
             });
             for (std::uint32_t k : vertices) {
                 const Vec3 y = surface.mesh.vertices[k] - bv.box.centre;
-                out.radius[i] = std::max(out.radius[i], succ(y.stableNorm() * (1 + 16 * unit_roundoff)));
+                out.radius[i] = std::max(out.radius[i], succ(length(y) * (1 + 16 * unit_roundoff)));
             }
         }
     });

@@ -12,6 +12,7 @@
 
 #include "toolkit/deform/parallel.hpp"
 #include "toolkit/deform/sample_nodes.hpp"
+#include "toolkit/surface/length.hpp"
 
 namespace cinch {
 namespace {
@@ -34,7 +35,7 @@ std::vector<Near> by_distance(std::span<const Vec3> nodes, std::size_t i)
     near.reserve(nodes.size());
     for (std::size_t j = 0; j < nodes.size(); ++j)
         if (j != i)
-            near.push_back({(nodes[j] - nodes[i]).stableNorm(), static_cast<std::uint32_t>(j)});
+            near.push_back({length(nodes[j] - nodes[i]), static_cast<std::uint32_t>(j)});
     std::sort(near.begin(), near.end(), [](const Near& a, const Near& b) { return a.distance != b.distance ? a.distance < b.distance : a.node < b.node; });
     return near;
 }
