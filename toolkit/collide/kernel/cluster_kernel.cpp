@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 
 #include "toolkit/bounds/rounding.hpp"
 #include "toolkit/hierarchy/kernel/leaf_kernel.hpp"
@@ -36,12 +37,12 @@ template <std::size_t L> struct Boxes {
         }
     }
     // Those that meet a box.
-    HWY_INLINE std::uint32_t meeting(const float (&box_low)[3], const float (&box_high)[3]) const
+    HWY_INLINE std::uint32_t meeting(const float* box_low, const float* box_high) const
     {
-        std::uint32_t apart = 0;
-        for (std::size_t r = 0; r < 3; ++r)
-            apart |= bits_where_greater(low[r], Wide<L>::all(box_high[r])) | bits_where_greater(Wide<L>::all(box_low[r]), high[r]);
-        return ~apart;
+        auto apart = (low[0] > Wide<L>::all(box_high[0])) | (Wide<L>::all(box_low[0]) > high[0]);
+        for (std::size_t r = 1; r < 3; ++r)
+            apart = apart | (low[r] > Wide<L>::all(box_high[r])) | (Wide<L>::all(box_low[r]) > high[r]);
+        return ~apart.bits();
     }
     HWY_INLINE void grow(float by)
     {
@@ -59,23 +60,25 @@ template <std::size_t L> struct Boxes {
     }
 };
 
-/// b's place relative to a's reference point.
+/// b's place relative to a's reference point. Fours are for x, y, z and nothing.
 struct Relative {
-    float shift[3];        ///< of b's corners
-    float low[3], high[3]; ///< of the box around b's leaf, grown by a's error
-    float error;           ///< of shift
+    float shift[3];                    ///< of b's corners
+    HWY_ALIGN float low[4], high[4];   ///< of the box around b's leaf, grown by a's error
+    float error;                       ///< of shift
 };
 HWY_INLINE Relative relative(const ClusterInput& in, const ClusterPair& pair, const LeafPlace& a, const LeafPlace& b)
 {
+    using Four = Wide<4>;
     Relative out;
     float far = 0;
     for (std::size_t r = 0; r < 3; ++r) {
         const float between = b.reference[r] - a.reference[r];
         out.shift[r] = between + in.shift[r];
         far = std::max(far, std::max(std::abs(between), std::abs(out.shift[r])));
-        out.high[r] = succ(succ(succ(succ(pair.dop_b[r] + in.shift[r]) + in.shift_error) - a.reference[r]) + a.error);
-        out.low[r] = -succ(succ(succ(succ(pair.dop_b[in.side + r] - in.shift[r]) + in.shift_error) + a.reference[r]) + a.error);
     }
+    const auto shift = Four::load_unaligned(in.shift), shift_error = Four::all(in.shift_error), start = Four::load_unaligned(a.reference), error = Four::all(a.error);
+    next(next(next(next(Four::load_unaligned(pair.dop_b) + shift) + shift_error) - start) + error).store(out.high);
+    (Four::all(0) - next(next(next(next(Four::load_unaligned(pair.dop_b + in.side) - shift) + shift_error) + start) + error)).store(out.low);
     out.error = succ(2 * unit_roundoff_of<float> * far + in.shift_error); // two roundings
     return out;
 }
@@ -90,9 +93,8 @@ template <std::size_t L> HWY_INLINE void gather(const float* slot, const std::ui
 {
     const std::uint8_t* const corner = corners_of(slot, L);
     for (std::size_t c = 0; c < 3; ++c) {
-        std::uint8_t vertex[16];
-        for (std::size_t n = 0; n < L; ++n)
-            vertex[n] = corner[c * L + triangle[n]];
+        HWY_ALIGN std::uint8_t vertex[16];
+        lookup_bytes<L>(corner + c * L, triangle, vertex);
         for (std::size_t r = 0; r < 3; ++r)
             out.corner[c][r] = lookup<L>(Wide<L>::load(slot + r * L), vertex) + Wide<L>::all(shift[r]);
     }
@@ -111,11 +113,10 @@ template <std::size_t L> void test_pair(const ClusterInput& in, const ClusterPai
     const Boxes<L> b(pair.slot_b, to_b.shift);
     const float rounding = 2 * unit_roundoff_of<float> * b.furthest(); // of the sums with the shift
     const float error_b = succ(succ(place_b.error + to_b.error) + rounding);
-    float low[3], high[3];
-    for (std::size_t r = 0; r < 3; ++r) {
-        high[r] = succ(succ(pair.dop_a[r] - place_a.reference[r]) + error_b);
-        low[r] = -succ(succ(pair.dop_a[in.side + r] + place_a.reference[r]) + error_b);
-    }
+    HWY_ALIGN float low[4], high[4];
+    const auto start = Wide<4>::load_unaligned(place_a.reference), error = Wide<4>::all(error_b);
+    next(next(Wide<4>::load_unaligned(pair.dop_a) - start) + error).store(high);
+    (Wide<4>::all(0) - next(next(Wide<4>::load_unaligned(pair.dop_a + in.side) + start) + error)).store(low);
     const std::uint32_t of_b = b.meeting(low, high) & ((1u << pair.triangles_b) - 1);
     if (of_b == 0)
         return;
@@ -134,10 +135,10 @@ template <std::size_t L> void test_pair(const ClusterInput& in, const ClusterPai
             low[r] = box[r][i];
             high[r] = box[3 + r][i];
         }
-        for (std::uint32_t left = of_b & b.meeting(low, high); left != 0; left &= left - 1) {
-            candidates.i[candidates.count] = static_cast<std::uint8_t>(i);
-            candidates.j[candidates.count++] = static_cast<std::uint8_t>(std::countr_zero(left));
-        }
+        const std::uint32_t met = of_b & b.meeting(low, high);
+        std::memset(candidates.i + candidates.count, static_cast<int>(i), L);
+        list_bits<L>(met, candidates.j + candidates.count);
+        candidates.count += static_cast<std::size_t>(std::popcount(met));
     }
     tests += candidates.count;
     std::fill_n(candidates.i + candidates.count, L, std::uint8_t{0});

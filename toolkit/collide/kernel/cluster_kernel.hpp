@@ -17,7 +17,7 @@ struct ClusterPair {
 
 struct ClusterInput {
     std::size_t lanes = 16, side = 4;
-    float shift[3] = {0, 0, 0}; ///< of b's body's origin from a's
+    float shift[4] = {0, 0, 0, 0}; ///< of b's body's origin from a's, and a 0
     float shift_error = 0;      ///< by how much any of them is off at most
 };
 

@@ -30,13 +30,6 @@ constexpr float infinity = std::numeric_limits<float>::infinity();
 
 /// 16 floats of a record: rows of q and θ, and what comes after.
 using Record = Wide<16>;
-HWY_INLINE Record load_record(const float* p)
-{
-    Record x;
-    for (std::size_t i = 0; i < Record::vectors; ++i)
-        x.v[i] = hn::LoadU(Record::D(), p + i * Record::width);
-    return x;
-}
 /// In every lane the sum of its four, ((0 + 1) + (2 + 3)).
 HWY_INLINE Record sum_of_fours(const Record& x)
 {
@@ -80,7 +73,7 @@ HWY_INLINE NodeSums prepare_nodes(const LeafInput& in, const PackedLeaf& leaf, c
         float h, r;
         std::memcpy(&h, influence + 4 * j + 1, sizeof h);
         std::memcpy(&r, influence + 4 * j + 2, sizeof r);
-        const auto map = load_record(record), image = sum_of_fours(map * pivot);
+        const auto map = Record::load_unaligned(record), image = sum_of_fours(map * pivot);
         if (j == 0)
             out.reference = image;
         const auto from_reference = image - out.reference, size = magnitude(map);

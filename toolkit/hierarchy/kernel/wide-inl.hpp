@@ -7,6 +7,7 @@
 #define CINCH_WIDE_INL
 #endif
 
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -32,6 +33,13 @@ template <std::size_t L> struct Wide {
         Wide x;
         for (std::size_t i = 0; i < vectors; ++i)
             x.v[i] = hn::Load(D(), p + i * width);
+        return x;
+    }
+    static HWY_INLINE Wide load_unaligned(const float* p)
+    {
+        Wide x;
+        for (std::size_t i = 0; i < vectors; ++i)
+            x.v[i] = hn::LoadU(D(), p + i * width);
         return x;
     }
     static HWY_INLINE Wide all(float value)
@@ -108,22 +116,44 @@ template <std::size_t L> HWY_INLINE Wide<L> fms(const Wide<L>& a, const Wide<L>&
     return x;
 }
 
-/// Bit i: whether a > b in lane i; false for NaN.
-template <std::size_t L> HWY_INLINE std::uint32_t bits_where_greater(const Wide<L>& a, const Wide<L>& b)
-{
-    std::uint32_t bits = 0;
-    for (std::size_t i = 0; i < Wide<L>::vectors; ++i) {
-        const auto mask = hn::Gt(a.v[i], b.v[i]);
-        if constexpr (Wide<L>::width == 1) {
-            bits |= static_cast<std::uint32_t>(!hn::AllFalse(typename Wide<L>::D(), mask)) << i;
-        } else {
-            std::uint8_t bytes[8] = {};
-            hn::StoreMaskBits(typename Wide<L>::D(), mask, bytes);
-            bits |= (std::uint32_t{bytes[0]} | std::uint32_t{bytes[1]} << 8) << (i * Wide<L>::width);
+/// One bit per lane, as the target keeps them.
+template <std::size_t L> struct Lanes {
+    using D = typename Wide<L>::D;
+
+    hn::Mask<D> v[Wide<L>::vectors];
+
+    HWY_INLINE std::uint32_t bits() const ///< bit i: of lane i
+    {
+        std::uint32_t bits = 0;
+        for (std::size_t i = 0; i < Wide<L>::vectors; ++i) {
+            if constexpr (Wide<L>::width == 1) {
+                bits |= static_cast<std::uint32_t>(!hn::AllFalse(D(), v[i])) << i;
+            } else {
+                std::uint8_t bytes[8] = {};
+                hn::StoreMaskBits(D(), v[i], bytes);
+                bits |= (std::uint32_t{bytes[0]} | std::uint32_t{bytes[1]} << 8) << (i * Wide<L>::width);
+            }
         }
+        return bits;
     }
-    return bits;
+};
+/// Whether a > b; false for NaN.
+template <std::size_t L> HWY_INLINE Lanes<L> operator>(const Wide<L>& a, const Wide<L>& b)
+{
+    Lanes<L> x;
+    for (std::size_t i = 0; i < Wide<L>::vectors; ++i)
+        x.v[i] = hn::Gt(a.v[i], b.v[i]);
+    return x;
 }
+template <std::size_t L> HWY_INLINE Lanes<L> operator|(const Lanes<L>& a, const Lanes<L>& b)
+{
+    Lanes<L> x;
+    for (std::size_t i = 0; i < Wide<L>::vectors; ++i)
+        x.v[i] = hn::Or(a.v[i], b.v[i]);
+    return x;
+}
+/// Bit i: whether a > b in lane i; false for NaN.
+template <std::size_t L> HWY_INLINE std::uint32_t bits_where_greater(const Wide<L>& a, const Wide<L>& b) { return (a > b).bits(); }
 
 /// succ of rounding.hpp.
 template <std::size_t L> HWY_INLINE Wide<L> next(const Wide<L>& x)
@@ -177,6 +207,33 @@ template <std::size_t L> HWY_INLINE Wide<L> lookup(const Wide<L>& table, const s
     for (std::size_t n = 0; n < L; ++n)
         out[n] = in[index[n]];
     return Wide<L>::load(out);
+}
+
+/// out[n] = table[index[n]], of L bytes each.
+template <std::size_t L> HWY_INLINE void lookup_bytes(const std::uint8_t* table, const std::uint8_t* index, std::uint8_t* out)
+{
+#if HWY_TARGET != HWY_SCALAR
+    const hn::FixedTag<std::uint8_t, L> d;
+    hn::StoreU(hn::TableLookupBytes(hn::LoadU(d, table), hn::LoadU(d, index)), d, out);
+#else
+    for (std::size_t n = 0; n < L; ++n)
+        out[n] = table[index[n]];
+#endif
+}
+
+/// The places of the bits that are set, in order, to `out`; up to L bytes more are overwritten. Without branches where lanes can be compressed.
+template <std::size_t L> HWY_INLINE void list_bits(std::uint32_t bits, std::uint8_t* out)
+{
+#if HWY_TARGET != HWY_SCALAR
+    if constexpr (Wide<L>::vectors == 1 && L == 16) {
+        const hn::RebindToSigned<typename Wide<L>::D> d;
+        const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(bits), static_cast<std::uint8_t>(bits >> 8)};
+        const auto places = hn::Compress(hn::Iota(d, 0), hn::LoadMaskBits(d, bytes));
+        return hn::StoreU(hn::DemoteTo(hn::Rebind<std::uint8_t, decltype(d)>(), places), hn::Rebind<std::uint8_t, decltype(d)>(), out);
+    }
+#endif
+    for (; bits != 0; bits &= bits - 1)
+        *out++ = static_cast<std::uint8_t>(std::countr_zero(bits));
 }
 
 /// Of all lanes; NaN hides.
