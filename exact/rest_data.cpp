@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "exact/number.hpp"
+#include "exact/oriented_check.hpp"
 
 namespace cinch::exact {
 namespace {
@@ -56,36 +57,6 @@ template <class N> bool ball_holds(const RestBox& box, double radius, const Vec3
     return certainly(squared <= N(radius) * N(radius));
 }
 
-// Whether x = centre + Σ β_i axis_i with |β_i| ≤ 1, by Cramer's rule.
-template <class N> bool oriented_holds(const OrientedBox& box, const Vec3& x)
-{
-    using Vector = std::array<N, 3>;
-    auto vector = [](const Vec3& v) { return Vector{N(v[0]), N(v[1]), N(v[2])}; };
-    auto determinant = [](const Vector& a, const Vector& b, const Vector& c) {
-        return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
-    };
-    const Vector a = vector(box.axis[0]), b = vector(box.axis[1]), c = vector(box.axis[2]);
-    Vector y = vector(x);
-    for (std::size_t s = 0; s < 3; ++s)
-        y[s] = y[s] - N(box.centre[static_cast<int>(s)]);
-    const N whole = absolute(determinant(a, b, c));
-    return certainly(absolute(determinant(y, b, c)) <= whole) && certainly(absolute(determinant(a, y, c)) <= whole) && certainly(absolute(determinant(a, b, y)) <= whole);
-}
-
-// An oriented box whose axes are parallel to the coordinates may be flat, and then says as much as an AABB.
-bool oriented_box_holds(const OrientedBox& box, const Vec3& x)
-{
-    bool aligned = true, finite = true;
-    for (int i = 0; i < 3; ++i)
-        for (int s = 0; s < 3; ++s) {
-            aligned &= i == s || box.axis[i][s] == 0;
-            finite &= std::isfinite(box.axis[i][s]);
-        }
-    if (aligned)
-        return contains(box.centre[0], box.axis[0][0], x[0]) && contains(box.centre[1], box.axis[1][1], x[1]) && contains(box.centre[2], box.axis[2][2], x[2]);
-    return !finite || oriented_holds<Interval>(box, x) || oriented_holds<Exact>(box, x);
-}
-
 // Local boxes and balls, and the weight models. The points are the exact tests' business: a linear program each.
 std::string model_fault(const DeformableSurface& surface, const RestBv& rest, const OrientedBox& oriented, std::span<const std::uint32_t> vertices)
 {
@@ -113,11 +84,12 @@ std::string model_fault(const DeformableSurface& surface, const RestBv& rest, co
     };
     std::vector<Doubt> balls, models; // where intervals do not decide
     const DirectedRounding upward; // Exact is integers, whatever the rounding
+    const OrientedCheck own_box(oriented);
     for (std::uint32_t k : vertices) {
         const Vec3& x = surface.mesh.vertices[k];
         const Weights::Row row = surface.weights.of(k);
         places.clear();
-        if (!oriented_box_holds(oriented, x))
+        if (!own_box.contains(x))
             return "vertex " + std::to_string(k) + " lies outside the oriented box";
         for (std::size_t i = 0; i < row.node.size(); ++i) {
             const auto j = static_cast<std::size_t>(std::lower_bound(rest.node.begin(), rest.node.end(), row.node[i]) - rest.node.begin());
