@@ -82,6 +82,11 @@ void bound_box(const RestBv& bv, std::span<const AffineMap> maps, Method method,
 {
     scratch.plus.resize(bv.node.size());
     scratch.minus.resize(bv.node.size());
+    // No axis is bounded by a transform that is not finite along another one: it means nothing as a whole.
+    if (!std::all_of(bv.node.begin(), bv.node.end(), [&](std::uint32_t j) { return is_finite(maps[j]); })) {
+        std::fill_n(supports.begin(), 2 * axes.size(), infinite);
+        return;
+    }
     for (std::size_t a = 0; a < axes.size(); ++a) {
         const double magnitude = extrema(bv, maps, axes[a], scratch);
         double error = 0; // of the extrema, and of the computed vertices

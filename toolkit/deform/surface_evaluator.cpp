@@ -33,15 +33,6 @@ void split(const std::vector<Vec3>& rest, std::span<std::uint32_t> order)
     split(rest, order.subspan(half));
 }
 
-bool is_finite(const AffineMap& map)
-{
-    for (const auto& row : map.m)
-        for (const double value : row)
-            if (!std::isfinite(value))
-                return false;
-    return true;
-}
-
 Vec3 image(const AffineMap& map, const Vec3& p)
 {
     Vec3 x;

@@ -90,6 +90,7 @@ RefitReport Refitter::operator()(std::span<const AffineMap> maps, std::span<doub
                         [&](std::size_t first, std::size_t last) { p.bounder->bound(first, last, supports.subspan(first * k, (last - first) * k)); });
     } else {
         std::fill(supports.begin(), supports.end(), infinite);
+        report.unbounded_nodes = static_cast<std::size_t>(std::count_if(maps.begin(), maps.end(), [](const AffineMap& map) { return !is_finite(map); }));
     }
     if (p.options.methods.contains(Method::vertices))
         bound_from_vertices(p.bvh, p.surface, maps, p.options, supports);

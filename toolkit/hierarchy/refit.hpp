@@ -9,7 +9,8 @@
 
 namespace cinch {
 
-/// The arithmetic of the kernels. Both give proven bounds; float's are looser by a few 1e-6 of the surface's extent.
+/// The arithmetic of the kernels. Both give proven bounds; float's are looser by a few 1e-6 of the surface's extent. Where a BV has
+/// more simulation nodes than float takes (most_nodes_in_float), double is used throughout.
 enum class Precision { float32, float64 };
 
 /// "float" or "double".
@@ -26,7 +27,8 @@ struct RefitOptions {
 };
 
 struct RefitReport {
-    std::size_t unbounded_nodes = 0; ///< simulation nodes whose transform is not finite, or too large for the arithmetic
+    std::size_t unbounded_nodes = 0; ///< simulation nodes whose transform is not finite, or too large for the arithmetic of the methods
+                                     ///< that have kernels
     std::size_t infinite = 0;        ///< supports that are +∞ for whatever reason
 };
 
@@ -40,7 +42,7 @@ public:
     Refitter(Refitter&&) noexcept;
 
     /// supports[bv·k + d], d as in axes_of(k). In parallel over BVs; the same bits for every thread count and every target. A transform
-    /// that is not finite makes the supports of the BVs that its simulation node influences infinite, and changes no other; or, on a
+    /// that is not finite, in whatever entry, makes all supports of the BVs that its simulation node influences infinite, and changes no other; or, on a
     /// surface far from the origin of coordinates, others by rounding at most, should the grid cell of the median node change.
     /// Throws std::invalid_argument for sizes that do not fit and std::runtime_error for a changed floating-point environment.
     RefitReport operator()(std::span<const AffineMap> maps, std::span<double> supports);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -16,6 +17,15 @@ struct AffineMap {
     double m[3][4];
 };
 inline constexpr AffineMap identity_map{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
+
+inline bool is_finite(const AffineMap& map)
+{
+    for (const auto& row : map.m)
+        for (const double x : row)
+            if (!std::isfinite(x))
+                return false;
+    return true;
+}
 
 /// Weights of every vertex as a file gives them: not normalised. Vertex k owns entries [row[k], row[k+1]).
 struct Influences {
