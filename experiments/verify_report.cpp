@@ -85,6 +85,9 @@ void print_table(const Inputs& input, const VerifyOptions& options, const Verify
         fmt::print("order of the ladder: limited <= eq12 <= convex broken {} times in {}\n", grouped(totals.ladder.broken), grouped(totals.ladder.compared));
     else
         fmt::print("order of the ladder: limited <= eq12 <= convex in all of {} comparisons\n", grouped(totals.ladder.compared));
+    if (totals.ladder.defaults)
+        fmt::print("default above eq12 in {} of {} ({:.1f} %), by over 1 % of its width in {}\n", grouped(totals.ladder.above), grouped(totals.ladder.defaults),
+                   100 * rate(totals.ladder.above, totals.ladder.defaults), totals.ladder.clearly ? grouped(totals.ladder.clearly) : "none");
     if (options.stats)
         fmt::print("memory: {:.1f} MB streamed by the kernels ({:.0f} bytes per BV), {:.1f} MB of rest data\n", static_cast<double>(totals.packed_bytes) / 1e6,
                    rate(totals.packed_bytes, totals.bounds / std::max<std::size_t>(1, totals.frames * static_cast<std::size_t>(options.kdop))),
@@ -143,6 +146,7 @@ std::vector<nlohmann::ordered_json> records_of(const Inputs& input, const Verify
                    {"triangles", triangles}, {"nodes", nodes}, {"bodies", input.bodies.size()}, {"motion", input.bodies[0].clip.name},
                    {"bounds", totals.bounds}, {"proven", totals.proven}, {"violated", totals.violated}, {"infinite", totals.infinite},
                    {"ladder_compared", totals.ladder.compared}, {"ladder_broken", totals.ladder.broken},
+                   {"default_compared", totals.ladder.defaults}, {"default_above_eq12", totals.ladder.above}, {"default_clearly_above_eq12", totals.ladder.clearly},
                    {"filter_hit_rate", rate(totals.decided_by_filter, totals.bounds)}, {"seconds", totals.seconds},
                    {"packed_bytes", totals.packed_bytes}, {"rest_bytes", totals.rest_bytes},
                    {"complete", totals.frames == totals.frames_wanted}, {"load_report", input.report}});

@@ -24,6 +24,9 @@ struct LevelTotals {
 /// limited ≤ eq12 ≤ convex, compared on the doubles themselves, for every BV, direction and frame.
 struct LadderTotals {
     std::size_t compared = 0, broken = 0;
+    std::size_t defaults = 0, above = 0, clearly = 0; ///< of `best`: bounds compared with Eq. 12, those above it, and by over 1 % of its width
+
+    bool holds() const { return broken == 0 && clearly == 0; }
 };
 
 struct VerifyTotals {

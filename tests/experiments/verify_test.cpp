@@ -32,6 +32,8 @@ TEST_CASE("verify proves a shape and says so in JSON Lines")
     CHECK(s["frames"] == 2);
     CHECK(s["kdop"] == 14);
     CHECK(s["ladder_broken"] == 0);
+    CHECK(s["default_compared"] == s["bounds"]);
+    CHECK(s["default_clearly_above_eq12"] == 0);
     CHECK(s["complete"] == true);
     CHECK(s["filter_hit_rate"] > 0.95);
     for (const char* field : {"input", "method", "seconds", "version", "commit", "compiler", "flags", "cpu", "simd_target", "seed"})
@@ -46,6 +48,31 @@ TEST_CASE("verify proves a shape and says so in JSON Lines")
             CHECK(record[field].is_number());
     }
     CHECK(bounds == s["bounds"]);
+}
+
+TEST_CASE("oriented boxes with reflected and exchanged axes are proven")
+{
+    for (const char* name : {"F01_oriented_box_sign.obj", "F01_oriented_box_sign_skinned.gltf"})
+        for (const char* k : {"6", "14", "18", "26"}) {
+            const test::Run run = test::cinch(std::string("verify " CINCH_REPORTS "/") + name + " --rest obb --method limited --json --kdop " + k);
+            CHECK(run.status == 0);
+            CHECK(summary(run)["violated"] == 0);
+        }
+}
+
+TEST_CASE("where two joints turn against each other, the default is not looser than Eq. 12")
+{
+    double ratio[2];
+    for (int i = 0; i < 2; ++i) {
+        const test::Run run = test::cinch(std::string("verify " CINCH_REPORTS "/F15_best_looser_than_eq12.gltf --json --method ") + (i ? "eq12" : "best"));
+        CHECK(run.status == 0);
+        ratio[i] = json::parse(run.lines().front())["mean_ratio"];
+        CHECK(summary(run)["default_compared"] == (i ? json(0) : summary(run)["bounds"]));
+    }
+    CHECK(ratio[0] <= ratio[1] * 1.001);
+    CHECK(ratio[1] < 1.001);
+    CHECK_THAT(test::cinch("verify " CINCH_REPORTS "/F15_best_looser_than_eq12.gltf").out,
+               Catch::Contains("default above eq12 in ") && Catch::Contains(", by over 1 % of its width in none\n"));
 }
 
 TEST_CASE("every method is proven on the table too, and verdict and order are stated")

@@ -6,6 +6,13 @@
 // Facts used: fl(x∘y) = (x∘y)(1 + δ) + ε with |δ| ≤ u, and ε = 0 for + and −, |ε| ≤ η/2 for ×; a sum of leaves that each
 // pass at most k roundings is within γ_k Σ|leaf| of the exact sum, in any order of summation [Higham, ch. 3].
 
+// Where the room is. Every term adds up worst cases that do not meet: all roundings of one sign and of their full size, on leaves of one
+// sign, at the node of greatest magnitude. Of what they allow, a search for the worst transforms, boxes and weights used 0.28 for
+// evaluation_error (few roundings, little added), 0.05 to 0.11 for the kernels (their constant is nearly twice its derivation, which in turn
+// counts 27 roundings of up to N for values that are mostly below N), and 0.004 for the sphere (n + 32 roundings on a sum of leaves that
+// is n times what any one of them passes, thrice). All of it is unproven room: nothing relies on it, and none may be taken away without a
+// derivation.
+
 #include <cmath>
 #include <limits>
 
@@ -31,7 +38,7 @@ template <class T> inline T succ(T x) noexcept
 /// A leaf A_rs c_s passes 2 (g) + 1 (×) + 2 (sum of three) + 1 (+ τ) + 1 (+ R) = 7 roundings, A_rs e_s 6, t_r 4, so
 /// |b̂ − b| ≤ γ₇M + 6·(η/2)(1 + u)⁴ with M = Σ_s Σ_r |γ_r A_rs|(|c_s| + e_s) + Σ_r |γ_r t_r|. M̂ is computed from non-negative
 /// leaves with ≤ 7 roundings (2 for the sum over r, 1 for |c| + e, 1 for ×, 3 for the sum), M ≤ M̂/(1 − γ₇) + 3η, and
-/// γ₇/(1 − γ₇) < 8u. 10u·M̂ + 16η leaves room for its own two roundings. [models: checked in exact arithmetic]
+/// γ₇/(1 − γ₇) < 8u. 10u·M̂ + 16η leaves room for its own two roundings.
 inline double extremum_error(double largest_magnitude) noexcept
 {
     return succ(10 * unit_roundoff * largest_magnitude + 16 * smallest_subnormal);
@@ -62,10 +69,11 @@ inline double sum_error(double nodes, double absolute_sum) noexcept
 //   b̂ = (dq·c + dθ) ± |dq|·e with dq = q − q̄: 1 (difference) + 3 (fma) + 1 roundings on ≤ N + 1.01 N: γ₅·2.01 N < 10.3u N; or by
 //   rows, 1 (difference) + 1 (product) + 1 (±) + 2 (sum of four), the same;
 //   over an oriented box |q·a_1| + |q·a_2| + |q·a_3| instead: 3 + 2 roundings, and a in T is off by u|a|: γ₇N + 3uN, X taking in Σ|a|;
-//   reference: q̄·z + θ̄ and the points' q̄·y, with |z| ≤ X and |y| ≤ 2X: 3 roundings on ≤ 3.03 N: 10u N. The slack has its own
-//   rounding in it, and sums of these are rounded up.
-// Together less than 24u N; 48u N leaves room for the rounding of N itself. Products underflow by ≤ η/2, at most 64 per node
-// and coordinate, those of q with X up to X·η: 128η(1 + ΣX).
+//   reference: q̄·z + θ̄, |z| ≤ X, 3 roundings on ≤ 1.01 N; and the points' q̄·y, |y| ≤ 2X, 3 on ≤ 2.02 N, or the box's q̄·(c − z) + |q̄|·e,
+//   |c − z| + e ≤ 2X, 1 (difference) + 3 (fma) + 1 roundings on the same: 13.2u N. The slack has its own rounding in it, and sums of these
+//   are rounded up.
+// Together less than 27u N; 48u N leaves room for the rounding of N itself, a few u of it, and nearly as much again. Products underflow by
+// ≤ η/2, at most 64 per node and coordinate, those of q with X up to X·η: 128η(1 + ΣX).
 
 inline constexpr double kernel_error_constant = 48;
 /// Where N_j is at most this, no sum of fewer than 2²⁰ terms of the kernels overflows.
@@ -94,16 +102,22 @@ template <class T> inline T dual_sum_factor(double depth) noexcept
 template <class T> inline T dual_sum_underflow(std::size_t nodes) noexcept { return static_cast<T>(2 * nodes) * smallest_subnormal_of<T>; }
 /// Most simulation nodes of a BV for the kernels in float, so that m·u ≤ 1/200 here, and less than 1/100 above.
 inline constexpr std::size_t most_nodes_in_float = 65536;
+/// And in double: the n_k < 2²⁰ and the fewer than 2²⁰ terms above.
+inline constexpr std::size_t most_nodes_in_double = (std::size_t{1} << 20) - 1;
 
 /// By how much a BV of the linear kind multiplies its nodes' errors. With m = row_depth, κ = Σ_jΣ_i|g_ji| max|y_i| + Σ_j residual_j +
 /// Σ_j max_i moment_ji/X_i, and |dq·x + dθ| ≤ 2.01 N:
 ///   q̄ against Σ m q: (m + 1)u N; P = dq·z + dθ: 4 roundings, 9u N κ; the sums over the nodes of P·g, residual·|P| and
-///   moment·|dq|, and of the last three: (m + 3)u·2.01 N κ each; support of q̄ + ΣP g: 4 roundings on ≤ (3.03 + 4.02κ) N.
-/// Together ≤ ((m + 35) + κ(6.03m + 44))u N, in units of 48u N.
+///   moment·|dq|, and of the last three: (m + 3)u·2.01 N κ each; support of q̄ + ΣP g, its own sum counted: 6 roundings on ≤ (3.03 + 4.02κ) N.
+/// Together ≤ ((m + 42) + κ(6.03m + 53))u N, in units of 48u N.
 /// Products: 6 per node and coordinate lose ≤ η/2 each, over the 128η that a node's error has: n/16 more.
+/// Infinite from κ = 2²⁰ on: below that products with q̄ + ΣP g are at most (2.02 + 2.01κ)N < 2²² magnitude_limit and do not overflow. (The
+/// map itself may, where a box is thin; then ‖q‖·slack is no number, and the bound infinite.)
 inline double linear_error_factor(std::size_t nodes, double kappa) noexcept
 {
-    return 1 + static_cast<double>(nodes) / 16 + (row_depth(nodes) + kappa * (6.5 * row_depth(nodes) + 48)) / kernel_error_constant;
+    if (!(kappa < 0x1p20))
+        return infinite;
+    return 1 + static_cast<double>(nodes) / 16 + (row_depth(nodes) + kappa * (6.5 * row_depth(nodes) + 53)) / kernel_error_constant;
 }
 
 } // namespace cinch

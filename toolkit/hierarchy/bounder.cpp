@@ -34,8 +34,8 @@ template <class T> struct KernelPart {
     mutable tbb::enumerable_thread_specific<KernelScratch<T>> scratch;
 
     KernelPart(const Bvh& bvh, const DeformableSurface& surface, Method method, const RefitOptions& options, Bounder::Leaves leaves)
-        : packed(pack<T>(bvh, surface, choose_kinds(bvh, surface, method, options.rest_shape, leaves == Bounder::Leaves::included ? 0.96 : 0.85),
-                         leaves == Bounder::Leaves::included)) // for queries time counts for more
+        : packed(pack<T>(bvh, surface, choose_kinds(bvh, surface, method, options.rest_shape, leaves == Bounder::Leaves::included ? for_refits : for_queries),
+                         leaves == Bounder::Leaves::included))
     {
         if (options.remember)
             remembered.assign(2 * packed.bvs.size() * static_cast<std::size_t>(options.kdop), std::numeric_limits<T>::quiet_NaN());
@@ -48,6 +48,13 @@ template <class T> struct KernelPart {
 };
 
 template <class T> using KernelParts = std::vector<std::unique_ptr<KernelPart<T>>>;
+
+// What is asked for, or doubles where a BV has too many simulation nodes for float.
+Precision precision_for(const Bvh& bvh, Precision wanted)
+{
+    const bool fits = std::all_of(bvh.bvs.begin(), bvh.bvs.end(), [](const Bv& bv) { return bv.influence_count <= most_nodes_in_float; });
+    return fits ? wanted : Precision::float64;
+}
 
 } // namespace
 
@@ -105,10 +112,11 @@ Bounder::Bounder(const Bvh& bvh, const DeformableSurface& surface, const RefitOp
     if ((bvh.detail == RestDetail::boxes && (by_points || options.methods.contains(Method::local))) ||
         (bvh.detail == RestDetail::inner && by_points && leaves == Leaves::included))
         throw std::invalid_argument("refit: the BVH was built without the rest data that these methods need (RestDetail)");
+    const Precision precision = precision_for(bvh, options.precision);
     for (const Method method : {Method::convex, Method::eq12, Method::limited, Method::local, Method::support, Method::linear, Method::best}) {
         if (!options.methods.contains(method))
             continue;
-        if (options.precision == Precision::float32)
+        if (precision == Precision::float32)
             parts_->single.push_back(std::make_unique<KernelPart<float>>(bvh, surface, method, options, leaves));
         else
             parts_->twice.push_back(std::make_unique<KernelPart<double>>(bvh, surface, method, options, leaves));

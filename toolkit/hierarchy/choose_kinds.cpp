@@ -123,7 +123,7 @@ Trial calibrate(const Bvh& bvh, const DeformableSurface& surface, Method kind, s
 
 } // namespace
 
-std::vector<ChosenKind> choose_kinds(const Bvh& bvh, const DeformableSurface& surface, Method method, RestShape shape, double worth_twice)
+std::vector<ChosenKind> choose_kinds(const Bvh& bvh, const DeformableSurface& surface, Method method, RestShape shape, KindPolicy policy)
 {
     const bool box_only = box_methods.contains(method);
     std::vector<ChosenKind> chosen(bvh.bvs.size(), {method, {}, 0, 0, box_only && shape == RestShape::obb});
@@ -162,13 +162,13 @@ std::vector<ChosenKind> choose_kinds(const Bvh& bvh, const DeformableSurface& su
         for (std::size_t k = 1; k < 3; ++k)
             if (trial[k].width[i] < trial[best].width[i])
                 best = k;
-        chosen[i] = {kinds[best], {}, start[best][i], 0, false};
-        double width = worth_twice * trial[best].width[i];
+        chosen[i] = {kinds[best], {}, start[best][i], 0, false, policy.guarded};
+        double width = policy.worth_twice * trial[best].width[i];
         for (std::size_t a = 0; a < 3; ++a)
             for (std::size_t b = a + 1; b < 3; ++b)
                 if (const double w = both(a, b); w < width) {
                     width = w;
-                    chosen[i] = {kinds[a], kinds[b], start[a][i], start[b][i], false};
+                    chosen[i] = {kinds[a], kinds[b], start[a][i], start[b][i], false, policy.guarded};
                 }
     }
     return chosen;

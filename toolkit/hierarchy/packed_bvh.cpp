@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <tuple>
+#include <utility>
 
 #include "toolkit/bounds/rounding.hpp"
 #include "toolkit/deform/dyadic.hpp"
@@ -58,8 +60,9 @@ public:
     {
         if (out_.node.size() > std::numeric_limits<std::uint32_t>::max() - 8)
             throw std::length_error("pack: over 2^32 influences; use larger leaves");
-        if (sizeof(T) == 4 && rest.node.size() > most_nodes_in_float)
-            throw std::length_error("pack: too many simulation nodes in a BV for float");
+        if (rest.node.size() > (sizeof(T) == 4 ? most_nodes_in_float : most_nodes_in_double))
+            throw std::length_error(sizeof(T) == 4 ? "pack: a BV has over 65,536 simulation nodes, too many for float; use double"
+                                                   : "pack: a BV has over 1,048,575 simulation nodes; use fewer");
         bv_ = {};
         bv_.kind = kind;
         bv_.start = static_cast<T>(start);
@@ -267,6 +270,18 @@ private:
     std::vector<std::uint32_t> order_; // of the simulation nodes
 };
 
+// The simulation nodes of the greatest mean weights; twice the same where there is one only.
+std::pair<std::uint32_t, std::uint32_t> heaviest_two(const RestBv& rest)
+{
+    std::size_t first = 0, second = 0;
+    for (std::size_t j = 1; j < rest.node.size(); ++j)
+        if (rest.model[j].mean > rest.model[first].mean)
+            second = std::exchange(first, j);
+        else if (second == first || rest.model[j].mean > rest.model[second].mean)
+            second = j;
+    return {rest.node[first], rest.node[second]};
+}
+
 // On a grid so coarse that it is (0, 0, 0) unless the surface lies far from there.
 Vec3 rest_origin(const RestBox& root)
 {
@@ -317,6 +332,14 @@ template <class T> PackedBvh<T> pack(const Bvh& bvh, const DeformableSurface& su
         if (kinds[i].also && wanted(i)) {
             out.bvs[leaves ? i : out.place[i]].also = static_cast<std::uint32_t>(out.bvs.size());
             packer.pack(bvh.rest(i), *kinds[i].also, kinds[i].also_start, nullptr);
+        }
+    for (std::size_t i = 0; i < bvh.bvs.size(); ++i)
+        if (kinds[i].guarded && wanted(i)) {
+            const RestBv rest = bvh.rest(i);
+            PackedBv<T>& bv = out.bvs[leaves ? i : out.place[i]];
+            bv.guard = static_cast<std::uint32_t>(out.bvs.size());
+            std::tie(bv.probe[0], bv.probe[1]) = heaviest_two(rest);
+            packer.pack(rest, Method::eq12, 0, nullptr);
         }
     out.bvs.shrink_to_fit();
     out.node.shrink_to_fit();

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "toolkit/bounds/directions.hpp"
-#include "toolkit/bounds/kernel/choose_lambda.hpp"
 #include "toolkit/bounds/rounding.hpp"
 
 // Targets without fused multiply-add would have to emulate it at great cost; what is left is AVX2 and up, NEON, and portable
@@ -21,92 +20,11 @@
 
 #include "toolkit/bounds/kernel/dual-inl.hpp"
 #include "toolkit/bounds/kernel/linear-inl.hpp"
+#include "toolkit/bounds/kernel/search-inl.hpp"
 #include "toolkit/bounds/kernel/support-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace cinch::HWY_NAMESPACE {
-
-// One BV's bound on its way: along and against the axes its value and, as long as somebody asks, λ; and the reference map.
-template <class T, std::size_t kAxes> struct Bound {
-    alignas(64) T value[2][4 * row_chunks<kAxes> + 12]; // room to store all rows of the last chunk
-    T lambda[2][kAxes] = {};
-    alignas(64) T reference[4 * row_chunks<kAxes>][4] = {};
-    T error; // the greatest of the BV's nodes
-    bool traced = false;
-};
-
-template <class T, std::size_t kAxes>
-void intersect(const KernelInput<T>& in, const PackedBv<T>& bv, const Extrema<T, kAxes>& e, const T (&lambda)[2][kAxes], const Dual<T, kAxes>& d, Bound<T, kAxes>& out)
-{
-    const T factor = dual_sum_factor<T>(takes_one_by_one(bv.kind) ? row_depth(bv.count) : sum_depth(bv.count)), underflow = dual_sum_underflow<T>(bv.count);
-    for (std::size_t s = 0; s < 2; ++s)
-        for (std::size_t a = 0; a < kAxes; ++a) {
-            const DualParts<T> parts{d.lower[s][a], d.upper[s][a], d.mass[s][a]};
-            const T value = in.rounding == Rounding::proven
-                                ? proven_dual_value(lambda[s][a], parts, e.greatest[s][a], e.greatest[1 - s][a], factor, underflow)
-                                : dual_value(lambda[s][a], parts);
-            if (value < out.value[s][a]) { // not if it is NaN
-                out.value[s][a] = value;
-                out.lambda[s][a] = lambda[s][a];
-            }
-        }
-}
-
-template <class T, std::size_t kAxes>
-void select_best(const PackedBv<T>& bv, const T* block, const T* b, std::vector<std::pair<T, T>>& scratch, T (&lambda)[2][kAxes])
-{
-    for (std::size_t s = 0; s < 2; ++s)
-        for (std::size_t a = 0; a < kAxes; ++a) {
-            scratch.clear();
-            for (std::size_t j = 0; j < bv.count; ++j) {
-                const std::size_t i = j / block_lanes, lane = j % block_lanes;
-                scratch.emplace_back(b[((i * kAxes + a) * 2 + s) * block_lanes + lane],
-                                     block[(i * PackedBv<T>::rows(bv.kind) + 1) * block_lanes + lane]);
-            }
-            lambda[s][a] = best_lambda<T>(scratch, 1 - bv.sum_l);
-        }
-}
-
-// λ near the best one by at most in.passes evaluations of D, which is evaluate<with its mass>(λ, D).
-template <class T, std::size_t kAxes, class Evaluate>
-void search(const KernelInput<T>& in, const PackedBv<T>& bv, const Extrema<T, kAxes>& e, T* remembered, Bound<T, kAxes>& out, const Evaluate& evaluate)
-{
-    T lambda[2][kAxes];
-    for (std::size_t s = 0; s < 2; ++s)
-        for (std::size_t a = 0; a < kAxes; ++a) {
-            lambda[s][a] = e.mean[s][a] + bv.start * (e.greatest[s][a] - e.mean[s][a]);
-            if (remembered && std::isfinite(remembered[2 * (s * kAxes + a)]))
-                lambda[s][a] = remembered[2 * (s * kAxes + a)];
-        }
-    Dual<T, kAxes> d;
-    if (in.passes == 1 && !remembered) {
-        evaluate.template operator()<false>(lambda, d);
-        return intersect<T, kAxes>(in, bv, e, lambda, d, out);
-    }
-    std::optional<TangentSearch<T>> tangents[2][kAxes];
-    for (int pass = 0; pass < in.passes; ++pass) {
-        evaluate.template operator()<true>(lambda, d);
-        intersect<T, kAxes>(in, bv, e, lambda, d, out);
-        for (std::size_t s = 0; s < 2; ++s)
-            for (std::size_t a = 0; a < kAxes; ++a) {
-                const DualParts<T> parts{d.lower[s][a], d.upper[s][a], d.mass[s][a]};
-                if (pass == 0)
-                    tangents[s][a].emplace(lambda[s][a], parts, bv.sum_l, bv.sum_r, e.mean[s][a]);
-                const T here = lambda[s][a];
-                lambda[s][a] = tangents[s][a]->next(here, parts, bv.sum_l);
-                if (remembered && pass + 1 == in.passes)
-                    remember(here, lambda[s][a] - here, 1 - bv.sum_l - parts.mass, remembered + 2 * (s * kAxes + a));
-            }
-    }
-}
-
-// The greatest b, to be intersected with D where λ is best.
-template <class T, std::size_t kAxes> void begin(const Extrema<T, kAxes>& e, Bound<T, kAxes>& out)
-{
-    for (std::size_t s = 0; s < 2; ++s)
-        for (std::size_t a = 0; a < kAxes; ++a)
-            out.value[s][a] = out.lambda[s][a] = e.greatest[s][a];
-}
 
 // The kinds for many simulation nodes: λ where the kind says, D there, and every such value intersected with the greatest b.
 template <class T, std::size_t kAxes>
@@ -139,6 +57,11 @@ void bound_by_blocks(const KernelInput<T>& in, const PackedBv<T>& bv, T* remembe
         dual<T, kAxes, false>(bv, block, rows, b, lambda, d);
         intersect<T, kAxes>(in, bv, e, lambda, d, out);
     }
+    if (bv.guard) {
+        Sides<T, kAxes> floor;
+        floor_of_probes<T, kAxes>(bv, *in.maps, floor);
+        store<T, kAxes>(floor, out.floor);
+    }
     if (bv.kind == Method::local)
         search<T, kAxes>(in, bv, e, remembered, out, [&]<bool kMass>(const T (&at)[2][kAxes], Dual<T, kAxes>& own) {
             dual<T, kAxes, kMass>(bv, block, rows, b, at, own);
@@ -165,10 +88,7 @@ void bound_by_rows(const KernelInput<T>& in, const PackedBv<T>& bv, T* remembere
         RowExtrema<T, kAxes> e;
         support_extrema<T, kAxes>(bv, *in.maps, node, value, reference, b, e);
         if (in.passes == 1 && !remembered) {
-            SidesInRows<T, kAxes> lambda;
-            support_in_one_pass<T, kAxes>(bv, value, b, e, in.rounding, bound, lambda);
-            if (out.traced)
-                to_array<T, kAxes>(lambda, out.lambda);
+            support_in_one_pass<T, kAxes>(bv, value, b, e, in.rounding, bound);
         } else {
             Extrema<T, kAxes> own;
             to_array<T, kAxes>(e.greatest, own.greatest);
@@ -191,34 +111,36 @@ void bound_by_rows(const KernelInput<T>& in, const PackedBv<T>& bv, T* remembere
         for (std::size_t c = 0; c < chunks; ++c)
             add_rest_support(bv, point, reference.chunk[c], reference.chunk[c], in.rounding, bound.chunk[0][c], bound.chunk[1][c]);
     }
-    for (std::size_t s = 0; s < 2; ++s)
-        for (std::size_t c = 0; c < chunks; ++c)
-            bound.chunk[s][c].store(&out.value[s][4 * c]); // what is too much, the next one overwrites
-    if (out.traced)
-        for (std::size_t c = 0; c < chunks; ++c)
-            reference.chunk[c].store(out.reference[4 * c]);
+    store<T, kAxes>(bound, out.value);
+    if (bv.guard) {
+        Sides<T, kAxes> floor;
+        floor_of_mean<T, kAxes>(bv, reference, floor);
+        store<T, kAxes>(floor, out.floor);
+    }
 }
 
-// What the errors of the BV's nodes add.
-template <class T, std::size_t kAxes> double widening(const KernelInput<T>& in, const PackedBv<T>& bv, const Bound<T, kAxes>& bound)
-{
-    const double error = static_cast<double>(bound.error);
-    return in.rounding == Rounding::proven ? succ(error * static_cast<double>(bv.error_factor)) : error;
-}
-
-// Back from T about the body's origin to supports in the world, with the errors of the BV's nodes on top.
+// Supports about the body's origin, with the errors of the BV's nodes on top.
 template <class T, std::size_t kAxes>
-void finish(const KernelInput<T>& in, const PackedBv<T>& bv, const Bound<T, kAxes>& bound, double* supports)
+void finish(const KernelInput<T>& in, const PackedBv<T>& bv, const Bound<T, kAxes>& bound, double (&own)[2][kAxes])
+{
+    const double wider = widening<T, kAxes>(in, bv, bound);
+    for (std::size_t s = 0; s < 2; ++s)
+        for (std::size_t a = 0; a < kAxes; ++a) {
+            const double sum = static_cast<double>(bound.value[s][a]) + wider, support = in.rounding == Rounding::proven ? succ(sum) : sum;
+            own[s][a] = support < infinite ? support : infinite;
+        }
+}
+
+// And in the world.
+template <class T, std::size_t kAxes> void to_world(const KernelInput<T>& in, const double (&own)[2][kAxes], double* supports)
 {
     const bool proven = in.rounding == Rounding::proven;
-    const double wider = widening<T, kAxes>(in, bv, bound);
     const Vec3& origin = in.maps->origin;
     const bool at_home = origin[0] == 0 && origin[1] == 0 && origin[2] == 0;
     const auto axes = axes_of(in.maps->kdop);
     for (std::size_t a = 0; a < kAxes; ++a)
         for (std::size_t s = 0; s < 2; ++s) {
-            double sum = static_cast<double>(bound.value[s][a]) + wider;
-            sum = proven ? succ(sum) : sum;
+            double sum = own[s][a];
             for (std::size_t r = 0; r < 3 && !at_home; ++r)
                 if (axes[a][r] != 0) {
                     sum += ((axes[a][r] > 0) == (s == 0) ? 1 : -1) * origin[static_cast<int>(r)];
@@ -228,7 +150,7 @@ void finish(const KernelInput<T>& in, const PackedBv<T>& bv, const Bound<T, kAxe
         }
 }
 
-// The same as floats that stay relative to the body's origin.
+// The same about the origin, as floats.
 template <class T, std::size_t kAxes>
 void finish(const KernelInput<T>& in, const PackedBv<T>& bv, const Bound<T, kAxes>& bound, std::size_t side, float* dop)
 {
@@ -264,31 +186,34 @@ void bound_one(const KernelInput<T>& in, std::size_t i, KernelScratch<T>& scratc
 }
 
 template <class T, std::size_t kAxes>
-void bound_range(const KernelInput<T>& in, std::size_t first, std::size_t last, KernelScratch<T>& scratch, double* supports, KernelTrace<T>* trace)
+void bound_range(const KernelInput<T>& in, std::size_t first, std::size_t last, KernelScratch<T>& scratch, double* supports)
 {
     for (std::size_t i = first; i < last; ++i, supports += 2 * kAxes) {
         const PackedBv<T>& bv = in.bvs[i];
         Bound<T, kAxes> bound;
-        bound.traced = trace != nullptr;
+        double own[2][kAxes];
         bound_one<T, kAxes>(in, i, scratch, bound);
-        finish<T, kAxes>(in, bv, bound, supports);
-        if (trace) {
-            *trace = {};
-            for (std::size_t a = 0; a < kAxes; ++a) {
-                for (std::size_t s = 0; s < 2 && bv.kind != Method::linear; ++s)
-                    trace->lambda[s][a] = bound.lambda[s][a];
-                if (takes_one_by_one(bv.kind))
-                    std::copy_n(bound.reference[a], 4, trace->reference[a]);
-            }
-            ++trace;
+        finish<T, kAxes>(in, bv, bound, own);
+        auto intersect_with = [&](std::size_t other_bv) {
+            Bound<T, kAxes> other;
+            double others[2][kAxes];
+            bound_one<T, kAxes>(in, other_bv, scratch, other);
+            finish<T, kAxes>(in, in.bvs[other_bv], other, others);
+            for (std::size_t s = 0; s < 2; ++s)
+                for (std::size_t a = 0; a < kAxes; ++a)
+                    own[s][a] = std::min(own[s][a], others[s][a]);
+        };
+        if (bv.also)
+            intersect_with(bv.also);
+        if (bv.guard) {
+            bool close = true;
+            for (std::size_t s = 0; s < 2; ++s)
+                for (std::size_t a = 0; a < kAxes; ++a)
+                    close &= close_to<T>(own[s][a], bound.floor[s][a], bound.floor[1 - s][a]);
+            if (!close)
+                intersect_with(bv.guard);
         }
-        if (bv.also) {
-            double other[2 * kAxes];
-            bound_one<T, kAxes>(in, bv.also, scratch, bound);
-            finish<T, kAxes>(in, in.bvs[bv.also], bound, other);
-            for (std::size_t d = 0; d < 2 * kAxes; ++d)
-                supports[d] = std::min(supports[d], other[d]);
-        }
+        to_world<T, kAxes>(in, own, supports);
     }
 }
 
@@ -328,13 +253,13 @@ void bound_list(const KernelInput<T>& in, std::span<const std::uint32_t> list, K
 }
 
 template <class T>
-void bound_any(const KernelInput<T>& in, std::size_t first, std::size_t last, KernelScratch<T>& scratch, double* supports, KernelTrace<T>* trace)
+void bound_any(const KernelInput<T>& in, std::size_t first, std::size_t last, KernelScratch<T>& scratch, double* supports)
 {
     switch (in.maps->kdop) {
-    case 6: return bound_range<T, 3>(in, first, last, scratch, supports, trace);
-    case 14: return bound_range<T, 7>(in, first, last, scratch, supports, trace);
-    case 18: return bound_range<T, 9>(in, first, last, scratch, supports, trace);
-    default: return bound_range<T, 13>(in, first, last, scratch, supports, trace);
+    case 6: return bound_range<T, 3>(in, first, last, scratch, supports);
+    case 14: return bound_range<T, 7>(in, first, last, scratch, supports);
+    case 18: return bound_range<T, 9>(in, first, last, scratch, supports);
+    default: return bound_range<T, 13>(in, first, last, scratch, supports);
     }
 }
 
@@ -349,14 +274,14 @@ void bound_any_list(const KernelInput<T>& in, std::span<const std::uint32_t> lis
     }
 }
 
-void bound_float(const KernelInput<float>& in, std::size_t first, std::size_t last, KernelScratch<float>& scratch, double* supports, KernelTrace<float>* trace)
+void bound_float(const KernelInput<float>& in, std::size_t first, std::size_t last, KernelScratch<float>& scratch, double* supports)
 {
-    bound_any<float>(in, first, last, scratch, supports, trace);
+    bound_any<float>(in, first, last, scratch, supports);
 }
 
-void bound_double(const KernelInput<double>& in, std::size_t first, std::size_t last, KernelScratch<double>& scratch, double* supports, KernelTrace<double>* trace)
+void bound_double(const KernelInput<double>& in, std::size_t first, std::size_t last, KernelScratch<double>& scratch, double* supports)
 {
-    bound_any<double>(in, first, last, scratch, supports, trace);
+    bound_any<double>(in, first, last, scratch, supports);
 }
 
 void list_float(const KernelInput<float>& in, std::span<const std::uint32_t> list, KernelScratch<float>& scratch, std::size_t side, float* dops)
@@ -381,15 +306,15 @@ HWY_EXPORT(list_float);
 HWY_EXPORT(list_double);
 
 template <>
-void bound_packed(const KernelInput<float>& input, std::size_t first, std::size_t last, KernelScratch<float>& scratch, std::span<double> supports, KernelTrace<float>* trace)
+void bound_packed(const KernelInput<float>& input, std::size_t first, std::size_t last, KernelScratch<float>& scratch, std::span<double> supports)
 {
-    HWY_DYNAMIC_DISPATCH(bound_float)(input, first, last, scratch, supports.data(), trace);
+    HWY_DYNAMIC_DISPATCH(bound_float)(input, first, last, scratch, supports.data());
 }
 
 template <>
-void bound_packed(const KernelInput<double>& input, std::size_t first, std::size_t last, KernelScratch<double>& scratch, std::span<double> supports, KernelTrace<double>* trace)
+void bound_packed(const KernelInput<double>& input, std::size_t first, std::size_t last, KernelScratch<double>& scratch, std::span<double> supports)
 {
-    HWY_DYNAMIC_DISPATCH(bound_double)(input, first, last, scratch, supports.data(), trace);
+    HWY_DYNAMIC_DISPATCH(bound_double)(input, first, last, scratch, supports.data());
 }
 
 template <>

@@ -32,21 +32,15 @@ template <class T> struct KernelScratch {
     std::vector<std::pair<T, T>> select;
 };
 
-/// How a bound came about (the first of two): λ along and against the axes, and the reference map q̄, θ̄ (zero for kinds without).
-template <class T> struct KernelTrace {
-    T lambda[2][13], reference[13][4];
-};
-
 /// Bounds BVs [first, last): supports[(bv − first)·k + d], d as in axes_of(k). With Rounding::proven each is an upper bound for every
 /// exactly deformed and every computed vertex. Whatever is not finite gives +∞. The arithmetic is IEEE with every operation
-/// and its order fixed: fused multiply-adds included. The same bits on every target.
-/// `trace`, if given, has one entry per BV.
+/// and its order fixed: fused multiply-adds included. The same bits on every target. A bound with a guard exceeds the guard's, which is an
+/// Eq. 12, by 1 % of its width at most.
 template <class T>
-void bound_packed(const KernelInput<T>& input, std::size_t first, std::size_t last, KernelScratch<T>& scratch, std::span<double> supports,
-                  KernelTrace<T>* trace = nullptr);
+void bound_packed(const KernelInput<T>& input, std::size_t first, std::size_t last, KernelScratch<T>& scratch, std::span<double> supports);
 
 /// Bounds the BVs listed, writing to each the k supports at dops + bv·2·side, `side` floats apart along and against the axes: floats
-/// relative to maps->origin, rounded up. Whatever is not finite gives +∞.
+/// relative to maps->origin, rounded up. Whatever is not finite gives +∞. Guards are not asked.
 template <class T>
 void bound_packed(const KernelInput<T>& input, std::span<const std::uint32_t> list, KernelScratch<T>& scratch, std::size_t side, float* dops);
 

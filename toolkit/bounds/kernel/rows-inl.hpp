@@ -291,7 +291,8 @@ HWY_INLINE void mean_map(const PackedBv<T>& bv, const ProjectedMaps<T>& maps, co
 }
 
 /// Adds to `value` max q·(x − pivot) over the rest vertices x, q of `direction`, and q̄·pivot + θ̄ of `base`: the points' greatest q·y +
-/// slack·‖q‖. For one chunk of axes.
+/// slack·‖q‖, or what the rest box reaches, where that is less. For one chunk of axes. Where q is not finite, neither is slack·‖q‖, and
+/// where it is, no product overflows (rounding.hpp): no point is passed over as NaN or −∞.
 template <class T>
 HWY_INLINE void add_rest_support(const PackedBv<T>& bv, const T* point, const Rows<T>& base, const Rows<T>& direction, Rounding rounding, Rows<T>& along, Rows<T>& against)
 {
@@ -315,8 +316,13 @@ HWY_INLINE void add_rest_support(const PackedBv<T>& bv, const T* point, const Ro
         norm.v[i] = hn::IfThenElse(safe, root.v[i], sum.v[i]);
     }
     const auto slack = norm * Rows<T>::all(bv.slack);
-    along = up(along + up(up(column_greatest(most) + slack, rounding) + position, rounding), rounding);
-    against = up(against + up(up(column_greatest(most_against) + slack, rounding) - position, rounding), rounding);
+    auto all = [&](int s) HWY_ATTR { return Rows<T>::all(bv.centre[s] - bv.pivot[s]); };
+    const auto middle = fma(q0, all(0), fma(q1, all(1), q2 * all(2)));
+    const auto radius = fma(size0, Rows<T>::all(bv.half[0]), fma(size1, Rows<T>::all(bv.half[1]), size2 * Rows<T>::all(bv.half[2])));
+    const auto reach = lesser(radius + middle, up(column_greatest(most) + slack, rounding));
+    const auto reach_against = lesser(radius - middle, up(column_greatest(most_against) + slack, rounding));
+    along = up(along + up(reach + position, rounding), rounding);
+    against = up(against + up(reach_against - position, rounding), rounding);
 }
 
 } // namespace cinch::HWY_NAMESPACE

@@ -101,13 +101,12 @@ template <class T, std::size_t kAxes> HWY_INLINE void from_array(const T (&in)[2
     }
 }
 
-/// The lesser of the greatest b and D(λ), λ at mean b + start·(greatest b − mean b): one pass, all in rows. See proven_dual_value. λ as it
-/// certifies: that of D, or the greatest b.
+/// The lesser of the greatest b and D(λ), λ at mean b + start·(greatest b − mean b): one pass, all in rows. See proven_dual_value.
 template <class T, std::size_t kAxes>
-HWY_INLINE void support_in_one_pass(const PackedBv<T>& bv, const T* value, const T* b, const RowExtrema<T, kAxes>& e, Rounding rounding, Sides<T, kAxes>& bound,
-                                    SidesInRows<T, kAxes>& lambda)
+HWY_INLINE void support_in_one_pass(const PackedBv<T>& bv, const T* value, const T* b, const RowExtrema<T, kAxes>& e, Rounding rounding, Sides<T, kAxes>& bound)
 {
     const auto factor = Rows<T>::all(dual_sum_factor<T>(row_depth(bv.count))), underflow = Rows<T>::all(dual_sum_underflow<T>(bv.count));
+    SidesInRows<T, kAxes> lambda;
     for (std::size_t c = 0; c < row_chunks<kAxes>; ++c)
         lambda[c] = e.mean[c] + Rows<T>::all(bv.start) * (e.greatest[c] - e.mean[c]);
     RowDual<T, kAxes> d;
@@ -122,8 +121,6 @@ HWY_INLINE void support_in_one_pass(const PackedBv<T>& bv, const T* value, const
         const auto least = lesser(dual, most);
         bound.chunk[0][c] = column<0>(least);
         bound.chunk[1][c] = column<1>(least);
-        for (std::size_t i = 0; i < Rows<T>::vectors; ++i)
-            lambda[c].v[i] = hn::IfThenElse(hn::Lt(dual.v[i], most.v[i]), at.v[i], most.v[i]);
     }
 }
 

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+// No #pragma once: compiled anew for every target.
+// From the extrema to a bound: D at the λ of a kind.
+#if defined(CINCH_SEARCH_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef CINCH_SEARCH_INL
+#undef CINCH_SEARCH_INL
+#else
+#define CINCH_SEARCH_INL
+#endif
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "toolkit/bounds/kernel/bound_kernel.hpp"
+#include "toolkit/bounds/kernel/choose_lambda.hpp"
+#include "toolkit/bounds/kernel/guard-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace cinch::HWY_NAMESPACE {
+
+/// One BV's bound on its way, along and against the axes; room to store all rows of the last chunk.
+template <class T, std::size_t kAxes> struct Bound {
+    alignas(64) T value[2][4 * row_chunks<kAxes> + 12];
+    alignas(64) T floor[2][4 * row_chunks<kAxes> + 12]; // of a BV with a guard
+    T error; // the greatest of the BV's nodes
+};
+
+template <class T, std::size_t kAxes> void store(const Sides<T, kAxes>& sides, T (&out)[2][4 * row_chunks<kAxes> + 12])
+{
+    for (std::size_t s = 0; s < 2; ++s)
+        for (std::size_t c = 0; c < row_chunks<kAxes>; ++c)
+            sides.chunk[s][c].store(&out[s][4 * c]); // what is too much, the next one overwrites
+}
+
+/// What the errors of the BV's nodes add.
+template <class T, std::size_t kAxes> double widening(const KernelInput<T>& in, const PackedBv<T>& bv, const Bound<T, kAxes>& bound)
+{
+    const double error = static_cast<double>(bound.error);
+    return in.rounding == Rounding::proven ? succ(error * static_cast<double>(bv.error_factor)) : error;
+}
+
+template <class T, std::size_t kAxes>
+void intersect(const KernelInput<T>& in, const PackedBv<T>& bv, const Extrema<T, kAxes>& e, const T (&lambda)[2][kAxes], const Dual<T, kAxes>& d, Bound<T, kAxes>& out)
+{
+    const T factor = dual_sum_factor<T>(takes_one_by_one(bv.kind) ? row_depth(bv.count) : sum_depth(bv.count)), underflow = dual_sum_underflow<T>(bv.count);
+    for (std::size_t s = 0; s < 2; ++s)
+        for (std::size_t a = 0; a < kAxes; ++a) {
+            const DualParts<T> parts{d.lower[s][a], d.upper[s][a], d.mass[s][a]};
+            const T value = in.rounding == Rounding::proven
+                                ? proven_dual_value(lambda[s][a], parts, e.greatest[s][a], e.greatest[1 - s][a], factor, underflow)
+                                : dual_value(lambda[s][a], parts);
+            if (value < out.value[s][a]) // not if it is NaN
+                out.value[s][a] = value;
+        }
+}
+
+template <class T, std::size_t kAxes>
+void select_best(const PackedBv<T>& bv, const T* block, const T* b, std::vector<std::pair<T, T>>& scratch, T (&lambda)[2][kAxes])
+{
+    for (std::size_t s = 0; s < 2; ++s)
+        for (std::size_t a = 0; a < kAxes; ++a) {
+            scratch.clear();
+            for (std::size_t j = 0; j < bv.count; ++j) {
+                const std::size_t i = j / block_lanes, lane = j % block_lanes;
+                scratch.emplace_back(b[((i * kAxes + a) * 2 + s) * block_lanes + lane],
+                                     block[(i * PackedBv<T>::rows(bv.kind) + 1) * block_lanes + lane]);
+            }
+            lambda[s][a] = best_lambda<T>(scratch, 1 - bv.sum_l);
+        }
+}
+
+/// Whether no side of the bound may exceed Eq. 12 clearly.
+template <class T, std::size_t kAxes> bool is_close(const KernelInput<T>& in, const PackedBv<T>& bv, const Bound<T, kAxes>& bound)
+{
+    const double wider = widening<T, kAxes>(in, bv, bound);
+    bool close = true;
+    for (std::size_t s = 0; s < 2; ++s)
+        for (std::size_t a = 0; a < kAxes; ++a)
+            close &= close_to<T>(static_cast<double>(bound.value[s][a]) + wider, bound.floor[s][a], bound.floor[1 - s][a]);
+    return close;
+}
+
+/// λ near the best one by at most in.passes evaluations of D, which is evaluate<with its mass>(λ, D). The kind local, whose best D is at most
+/// Eq. 12, goes on where it has a guard and may exceed it, and raises its floors to what its tangents leave.
+template <class T, std::size_t kAxes, class Evaluate>
+void search(const KernelInput<T>& in, const PackedBv<T>& bv, const Extrema<T, kAxes>& e, T* remembered, Bound<T, kAxes>& out, const Evaluate& evaluate)
+{
+    const bool guarded = bv.guard != 0 && bv.kind == Method::local;
+    T lambda[2][kAxes];
+    for (std::size_t s = 0; s < 2; ++s)
+        for (std::size_t a = 0; a < kAxes; ++a) {
+            lambda[s][a] = e.mean[s][a] + bv.start * (e.greatest[s][a] - e.mean[s][a]);
+            if (remembered && std::isfinite(remembered[2 * (s * kAxes + a)]))
+                lambda[s][a] = remembered[2 * (s * kAxes + a)];
+        }
+    Dual<T, kAxes> d;
+    if (in.passes == 1 && !remembered) {
+        evaluate.template operator()<false>(lambda, d);
+        intersect<T, kAxes>(in, bv, e, lambda, d, out);
+        if (!guarded || is_close<T, kAxes>(in, bv, out))
+            return;
+    }
+    constexpr int most_passes = 12;
+    std::optional<TangentSearch<T>> tangents[2][kAxes];
+    for (int pass = 0; pass < in.passes || (guarded && pass < most_passes && !is_close<T, kAxes>(in, bv, out)); ++pass) {
+        evaluate.template operator()<true>(lambda, d);
+        intersect<T, kAxes>(in, bv, e, lambda, d, out);
+        for (std::size_t s = 0; s < 2; ++s)
+            for (std::size_t a = 0; a < kAxes; ++a) {
+                const DualParts<T> parts{d.lower[s][a], d.upper[s][a], d.mass[s][a]};
+                if (pass == 0)
+                    tangents[s][a].emplace(lambda[s][a], parts, bv.sum_l, bv.sum_r, e.mean[s][a]);
+                const T here = lambda[s][a];
+                lambda[s][a] = tangents[s][a]->next(here, parts, bv.sum_l);
+                if (guarded)
+                    out.floor[s][a] = std::max(out.floor[s][a], tangents[s][a]->least());
+                if (remembered && pass + 1 == in.passes)
+                    remember(here, lambda[s][a] - here, 1 - bv.sum_l - parts.mass, remembered + 2 * (s * kAxes + a));
+            }
+    }
+}
+
+/// The greatest b, to be intersected with D where λ is best.
+template <class T, std::size_t kAxes> void begin(const Extrema<T, kAxes>& e, Bound<T, kAxes>& out)
+{
+    for (std::size_t s = 0; s < 2; ++s)
+        for (std::size_t a = 0; a < kAxes; ++a)
+            out.value[s][a] = e.greatest[s][a];
+}
+
+} // namespace cinch::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif
