@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <random>
 #include <sstream>
 
@@ -76,6 +77,48 @@ inline int wrong_orders(const TrianglePoints& a, const TrianglePoints& b, bool e
             wrong += intersect(q, p) != expected;
         }
     return wrong;
+}
+
+struct Random {
+    std::mt19937_64 bits;
+    double unit() { return std::ldexp(static_cast<double>(bits() >> 11), -53); }
+    double symmetric() { return 2 * unit() - 1; }
+    Vec3 point() { return {symmetric(), symmetric(), symmetric()}; }
+    std::size_t below(std::size_t n) { return bits() % n; }
+    /// A point of the triangle, or of its plane, rounded: at a corner, on an edge or anywhere.
+    Vec3 point_of(const TrianglePoints& t)
+    {
+        const std::size_t i = below(3);
+        const double s = unit();
+        switch (below(4)) {
+        case 0: return t[i];
+        case 1: return t[i] + s * (t[(i + 1) % 3] - t[i]);
+        case 2: return t[0] + s * (t[1] - t[0]) + (1 - s) * unit() * (t[2] - t[0]);
+        default: return t[0] + 2 * symmetric() * (t[1] - t[0]) + 2 * symmetric() * (t[2] - t[0]);
+        }
+    }
+    /// Moved by a few units in the last place, or not.
+    Vec3 nudged(Vec3 v)
+    {
+        for (double& x : v)
+            for (std::size_t steps = below(3); steps > 0; --steps)
+                x = std::nextafter(x, below(2) ? 2.0 : -2.0);
+        return v;
+    }
+};
+
+/// A triangle that touches `a` up to rounding: with a vertex on it, an edge through a point of it, two or three vertices in its plane.
+inline TrianglePoints near_touching(Random& random, const TrianglePoints& a)
+{
+    const Vec3 x = random.point_of(a), d = random.point();
+    switch (random.below(6)) {
+    case 0: return {random.nudged(x), random.point(), random.point()};
+    case 1: return {x + random.unit() * d, x - random.unit() * d, random.point()};
+    case 2: return {random.nudged(x), random.nudged(random.point_of(a)), random.point()};
+    case 3: return {random.nudged(x), random.nudged(random.point_of(a)), random.nudged(random.point_of(a))};
+    case 4: return {x, random.nudged(x), random.point_of(a)}; // a sliver
+    default: return {x, x, random.below(2) ? random.point() : random.point_of(a)}; // a segment
+    }
 }
 
 inline std::string text(const TrianglePoints& a, const TrianglePoints& b)

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <type_traits>
 
 #include "tests/support.hpp"
 #include "toolkit/bounds/kernel/bound_kernel.hpp"
@@ -11,6 +12,10 @@
 #include "toolkit/deform/surface_evaluator.hpp"
 
 using namespace cinch;
+
+static_assert(std::is_constructible_v<SurfaceEvaluator<double>, DeformableSurface&> && std::is_constructible_v<SurfaceEvaluator<float>, const DeformableSurface&>);
+static_assert(!std::is_constructible_v<SurfaceEvaluator<double>, DeformableSurface> && !std::is_constructible_v<SurfaceEvaluator<float>, const DeformableSurface>,
+              "a temporary would be gone at the first call");
 
 TEST_CASE("SIMD evaluation in double has the bits of the scalar one, on every target")
 {

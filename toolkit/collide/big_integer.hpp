@@ -102,9 +102,14 @@ inline BigInteger operator*(const BigInteger& a, const BigInteger& b) noexcept
     product.negative = a.negative != b.negative;
     product.size = a.size + b.size;
     std::fill_n(product.word.begin(), product.size, 0);
+    std::size_t first = 0; // word of b that is not 0: of a double far above the unit all but the last three are
+    while (b.word[first] == 0)
+        ++first;
     for (std::size_t i = 0; i < a.size; ++i) {
+        if (a.word[i] == 0)
+            continue;
         std::uint64_t carry = 0;
-        for (std::size_t j = 0; j < b.size; ++j) {
+        for (std::size_t j = first; j < b.size; ++j) {
             const std::uint64_t digit = std::uint64_t{a.word[i]} * b.word[j] + product.word[i + j] + carry; // at most 2^64 − 1
             product.word[i + j] = static_cast<std::uint32_t>(digit);
             carry = digit >> 32;

@@ -2,7 +2,9 @@
 #include "toolkit/collide/collider.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
+#include <string>
 
 #include "toolkit/bounds/directions.hpp"
 #include "toolkit/bounds/rounding.hpp"
@@ -15,12 +17,47 @@ namespace {
 
 constexpr std::size_t tests_per_task = 512, clusters_per_task = 128, tasks_at_once = 64;
 
+/// With these alone a tree copies what it needs of its BVH.
+constexpr Methods kernel_methods = Method::convex | Method::eq12 | Method::limited | Method::local | Method::support | Method::linear | Method::best;
+
+/// What must not be less than the truth, where two opposite infinities met.
+double outward(double x) { return std::isnan(x) ? infinite : x; }
+
 } // namespace
 
-void Collider::add(const Bvh& bvh, const DeformableSurface& surface)
+void Collider::add(const Bvh& bvh, const DeformableSurface& surface) { add(bvh, nullptr, surface); }
+
+void Collider::add(Bvh&& bvh, const DeformableSurface& surface)
 {
-    trees_.emplace_back(bvh, surface, options_);
-    surfaces_.push_back(&surface);
+    if (options_.methods.within(kernel_methods))
+        return add(bvh, nullptr, surface);
+    auto own = std::make_unique<const Bvh>(std::move(bvh));
+    const Bvh& kept = *own;
+    add(kept, std::move(own), surface);
+}
+
+void Collider::add(const Bvh& bvh, std::unique_ptr<const Bvh> own, const DeformableSurface& surface)
+{
+    bodies_.push_back({std::move(own), &surface});
+    try {
+        trees_.emplace_back(bvh, surface, options_);
+    } catch (...) { // as if nothing had been added
+        bodies_.pop_back();
+        throw;
+    }
+    no_frame_ = "after add()";
+}
+
+void Collider::require_frame() const
+{
+    if (no_frame_)
+        throw std::logic_error(std::string("Collider: a query ") + no_frame_ + "; call update() with one frame per body first");
+}
+
+const std::vector<std::uint32_t>& Collider::unknown() const
+{
+    require_frame();
+    return unknown_;
 }
 
 std::size_t Collider::bytes() const
@@ -28,11 +65,14 @@ std::size_t Collider::bytes() const
     std::size_t bytes = 0;
     for (const LazyRefit& tree : trees_)
         bytes += tree.bytes();
+    for (const Body& body : bodies_)
+        bytes += body.bvh ? body.bvh->bytes() : 0;
     return bytes;
 }
 
 void Collider::update(std::span<const BodyFrame> frames)
 {
+    no_frame_ = "after an update() that threw";
     if (frames.size() != trees_.size())
         throw std::invalid_argument("Collider::update: one frame per body is needed");
     require_default_arithmetic();
@@ -45,6 +85,7 @@ void Collider::update(std::span<const BodyFrame> frames)
     for (std::uint32_t i = 0; i < trees_.size(); ++i)
         if (!trees_[i].known())
             unknown_.push_back(i);
+    no_frame_ = nullptr;
 }
 
 // Sweeps over the roots' intervals along x, and tests the whole k-DOPs of those that overlap.
@@ -59,7 +100,7 @@ void Collider::sweep()
     for (std::uint32_t i = 0; i < trees_.size(); ++i)
         if (!trees_[i].empty() && trees_[i].known()) {
             const double high = static_cast<double>(trees_[i].dop(0)[0]), low = -static_cast<double>(trees_[i].dop(0)[side]), o = trees_[i].origin()[0];
-            intervals.push_back({o == 0 ? low : -succ(-low - o), o == 0 ? high : succ(high + o), i});
+            intervals.push_back({-outward(o == 0 ? -low : succ(-low - o)), outward(o == 0 ? high : succ(high + o)), i});
         }
     std::sort(intervals.begin(), intervals.end(), [](const Interval& x, const Interval& y) { return x.low < y.low || (x.low == y.low && x.body < y.body); });
     std::vector<std::pair<std::uint32_t, std::uint32_t>> found;
@@ -97,6 +138,9 @@ void Collider::sweep()
 
 // For a direction d the supports A and B about the origins O_a and O_b are apart if A(d) + B(−d) + d·(O_a − O_b) < 0. The kernel tests
 // fl(A + B) + shift < 0 instead, s = fl(A + B) being off by u|s|: with |s| ≥ 2|shift| that does no harm to the sign, else it is at most 2u|shift|.
+// Where A + B or the shift overflows: an infinity from rounding up keeps its pair, as infinity and NaN are not < 0; fl(A + B) = −∞ with a finite
+// shift is right, as A + B < −2^128 + 2^103 and the shift is at most 2^128 − 2^104; a shift below −2^128 is −∞, and succ of it NaN. Where they
+// underflow sums are exact, and succ rounds up what a conversion to float loses.
 void Collider::set_shift(BodyPair& pair) const
 {
     const std::size_t side = dop_side(options_.kdop);
@@ -122,7 +166,8 @@ void Collider::set_shift(BodyPair& pair) const
         const double from_a = b[r] - a[r];
         const float shift = static_cast<float>(from_a);
         pair.clusters.shift[r] = shift;
-        pair.clusters.shift_error = std::max(pair.clusters.shift_error, succ(static_cast<float>(succ(std::abs(from_a - static_cast<double>(shift)) + rounded))));
+        const double error = outward(std::abs(from_a - static_cast<double>(shift)) + rounded); // infinite where the shift is
+        pair.clusters.shift_error = std::max(pair.clusters.shift_error, succ(static_cast<float>(succ(error))));
     }
 }
 
@@ -204,6 +249,7 @@ void Collider::follow_fronts()
 
 bool Collider::find(Query query, const Sink& sink)
 {
+    require_frame();
     require_default_arithmetic();
     sweep();
     bool found = false, go_on = true;
@@ -300,7 +346,7 @@ void Collider::test_piece(Piece& piece) const
     for (const BvPair& leaf : leaves)
         piece.clusters.push_back({a.slot(leaf.a), b.slot(leaf.b), a.dop(leaf.a), b.dop(leaf.b), a.leaf(leaf.a).triangles, b.leaf(leaf.b).triangles});
     test_clusters(pair.clusters, piece.clusters, 0, piece.hits, piece.counts.triangle_tests);
-    ExactPair exact(*surfaces_[pair.a], a.frame(), *surfaces_[pair.b], b.frame());
+    ExactPair exact(*bodies_[pair.a].surface, a.frame(), *bodies_[pair.b].surface, b.frame());
     for (const TriangleHit& hit : piece.hits) {
         const TrianglePair triangles{pair.a, a.triangle(a.leaf(leaves[hit.pair].a).first_triangle + hit.i), pair.b,
                                      b.triangle(b.leaf(leaves[hit.pair].b).first_triangle + hit.j)};

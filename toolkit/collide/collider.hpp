@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -41,26 +42,37 @@ public:
     /// All bodies have the same options.
     explicit Collider(const LazyOptions& options) : options_(options) {}
 
-    /// Surfaces must stay as they are, and alive; BVHs too where LazyRefit says so, which see for what is thrown.
+    /// The surface must stay as it is, and alive; so must a BVH that is not moved in, where LazyRefit says so, which see for what is thrown.
+    /// Queries need a new update() then.
     void add(const Bvh& bvh, const DeformableSurface& surface);
+    void add(Bvh&& bvh, const DeformableSurface& surface); ///< keeps the BVH if it is needed
+    void add(const Bvh& bvh, const DeformableSurface&& surface) = delete;
+    void add(Bvh&& bvh, const DeformableSurface&& surface) = delete;
+    void add(const Bvh&& bvh, const DeformableSurface& surface) = delete;
+    void add(const Bvh&& bvh, const DeformableSurface&& surface) = delete;
 
     /// Begins a frame, one per body; what it points to must stay alive until after the query. Throws std::invalid_argument for sizes that do
-    /// not fit, std::runtime_error for a changed floating-point environment.
+    /// not fit, std::runtime_error for a changed floating-point environment; whatever it throws, there is no frame then.
     void update(std::span<const BodyFrame> frames);
 
-    /// Queries the frame. `sink` gets the pairs in order, piece by piece, and says whether to go on. True if there are any.
+    /// Queries the frame. `sink` gets the pairs in order, piece by piece, and says whether to go on. True if there are any. These and unknown()
+    /// throw std::logic_error if there is no frame: before the first update(), after one that threw, and after add().
     using Sink = std::function<bool(std::span<const TrianglePair>)>;
     bool find(Query query, const Sink& sink);
     std::vector<TrianglePair> pairs();
     bool any();
 
     /// Bodies of which nothing is known in this frame (LazyRefit::known): to be taken as overlapping everything. They are in no pair.
-    const std::vector<std::uint32_t>& unknown() const { return unknown_; }
+    const std::vector<std::uint32_t>& unknown() const;
     const QueryCounts& counts() const { return counts_; } ///< of the frame so far
     std::span<const LazyRefit> trees() const { return trees_; }
-    std::size_t bytes() const; ///< of everything but the surfaces
+    std::size_t bytes() const; ///< of everything but the surfaces and BVHs that were not moved in
 
 private:
+    struct Body {
+        std::unique_ptr<const Bvh> bvh; ///< if it was moved in and the tree refers to it
+        const DeformableSurface* surface;
+    };
     // Two bodies whose roots overlap.
     struct BodyPair {
         std::uint32_t a = 0, b = 0;
@@ -79,6 +91,8 @@ private:
         QueryCounts counts;
     };
 
+    void add(const Bvh& bvh, std::unique_ptr<const Bvh> own, const DeformableSurface& surface);
+    void require_frame() const;
     void sweep();
     void follow_fronts();
     void set_shift(BodyPair& pair) const;
@@ -89,8 +103,9 @@ private:
     bool list_leaves(const Sink& sink) const;
 
     LazyOptions options_;
-    std::vector<const DeformableSurface*> surfaces_;
-    std::vector<LazyRefit> trees_;
+    const char* no_frame_ = "before the first update()"; ///< why there is none, or null
+    std::vector<Body> bodies_;
+    std::vector<LazyRefit> trees_; ///< one per body
     std::vector<std::uint32_t> unknown_;
     QueryCounts counts_;
 

@@ -30,10 +30,11 @@ bool apart(const Aabb& a, const Aabb& b) // false for what is not a number
 
 void SpatialHash::load(std::span<const Body> bodies)
 {
+    loaded_ = false;
     bodies_.assign(bodies.begin(), bodies.end());
     items_.clear();
     everywhere_.clear();
-    std::vector<Aabb> boxes; // of the bodies
+    std::vector<Aabb> boxes; // of the triangles
     double edges = 0;
     for (std::uint32_t b = 0; b < bodies.size(); ++b) {
         if (bodies[b].positions.size() != bodies[b].mesh->vertices.size())
@@ -80,6 +81,7 @@ void SpatialHash::load(std::span<const Body> bodies)
     for (std::uint32_t i = static_cast<std::uint32_t>(items_.size()); i-- > 0;)
         if (!items_[i].everywhere)
             for_each_cell(items_[i].range, [&](const Cell& cell) { entries_[--bucket_[hash(cell, buckets)]] = {cell, i}; });
+    loaded_ = true;
 }
 
 bool SpatialHash::intersect(const Item& a, const Item& b) const
@@ -89,7 +91,9 @@ bool SpatialHash::intersect(const Item& a, const Item& b) const
 
 void SpatialHash::find(std::vector<TrianglePair>& pairs) const
 {
-    const auto buckets = static_cast<std::uint32_t>(bucket_.empty() ? 1 : bucket_.size() - 1);
+    if (!loaded_)
+        throw std::logic_error("SpatialHash::find: nothing is loaded; call load() first, and again after one that threw");
+    const auto buckets = static_cast<std::uint32_t>(bucket_.size() - 1);
     auto report = [&](const Item& a, const Item& b) { // a.body < b.body
         if (intersect(a, b))
             pairs.push_back({a.body, a.triangle, b.body, b.triangle});

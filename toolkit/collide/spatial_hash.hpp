@@ -22,7 +22,8 @@ public:
     /// Throws std::invalid_argument for positions that are not one per vertex, std::length_error for over 2^32 entries. All must stay
     /// alive until after find().
     void load(std::span<const Body> bodies);
-    /// Appends all pairs, exact and closed, each once, in no particular order.
+    /// Appends all pairs, exact and closed, each once, in no particular order. Throws std::logic_error before the first load() and after one
+    /// that threw.
     void find(std::vector<TrianglePair>& pairs) const;
 
     std::size_t bytes() const;
@@ -45,6 +46,7 @@ private:
     std::vector<std::uint32_t> everywhere_;
     std::vector<std::uint32_t> bucket_; ///< where each bucket's entries begin; one more at the end
     std::vector<Entry> entries_;
+    bool loaded_ = false;
 };
 
 } // namespace cinch

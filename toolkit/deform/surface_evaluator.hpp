@@ -17,6 +17,7 @@ namespace cinch {
 template <class T> class SurfaceEvaluator {
 public:
     explicit SurfaceEvaluator(const DeformableSurface& surface);
+    explicit SurfaceEvaluator(const DeformableSurface&& surface) = delete; ///< it would refer to what is gone
 
     /// `out` has a place per vertex. In parallel. Non-finite maps give non-finite coordinates where they have weight, and nowhere else.
     void operator()(std::span<const AffineMap> maps, std::span<Vec3> out) const;

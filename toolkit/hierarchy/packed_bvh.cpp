@@ -78,7 +78,7 @@ public:
             out_.node.resize(bv_.first_node + blocks_of(rest.node.size()) * block_lanes, out_.node.back());
         }
         put_box(rest.box, out_.rest.origin, bv_.centre, bv_.half);
-        if (oriented)
+        if (oriented && are_normal(*oriented)) // else the other box does
             put_oriented(*oriented);
         if (takes_one_by_one(kind))
             put_points(rest);
@@ -106,6 +106,16 @@ private:
                 to.push_back(static_cast<std::uint32_t>(j));
         }
         order_.insert(order_.end(), others.begin(), others.end());
+    }
+
+    // Whether T holds every component of the axes to within u|a|, and so does the product with what it grows by: none is subnormal, but it may be 0.
+    static bool are_normal(const OrientedBox& box)
+    {
+        for (const Vec3& axis : box.axis)
+            for (const double a : axis)
+                if (a != 0 && !(std::abs(a) >= static_cast<double>(std::numeric_limits<T>::min())))
+                    return false;
+        return true;
     }
 
     // The centre's error d in the direction of an axis a is within Σ d_s of it, so a grows by that; a in T is off by u|a| (rounding.hpp).

@@ -16,7 +16,7 @@ HWY_BEFORE_NAMESPACE();
 namespace cinch::HWY_NAMESPACE {
 
 inline constexpr float root_3 = 1.7320510f, two_root_3 = 3.4641020f; // rounded up
-inline constexpr float margin_factor = 1 + 0x1p-16f, margin_underflow = 0x1p-120f;
+inline constexpr float margin_factor = 1 + 0x1p-16f, margin_underflow = 0x1p-120f, greatest_span = 0x1p41f; // see test_clusters
 
 template <std::size_t L> using Point = Wide<L>[3]; ///< one in each lane
 
@@ -27,7 +27,7 @@ template <std::size_t L> struct Triangles {
 
     HWY_INLINE void measure(float difference)
     {
-        auto squared = Wide<L>::all(0);
+        auto squared = Wide<L>::all(margin_underflow); // d ≥ 2^-60
         for (std::size_t r = 0; r < 3; ++r) {
             const auto extent = greater(greater(corner[0][r], corner[1][r]), corner[2][r]) - less(less(corner[0][r], corner[1][r]), corner[2][r]);
             squared = fma(extent, extent, squared);
@@ -69,20 +69,23 @@ template <std::size_t L> HWY_INLINE void subtract(const Point<L>& a, const Point
         out[r] = a[r] - b[r];
 }
 
-/// Of a pair of triangles in every lane: D, g and D + √3 g. See test_clusters.
+/// Of a pair of triangles in every lane: g and D + √3 g, and whether floats may decide: D is a number below the limit. See test_clusters.
 template <std::size_t L> struct Spread {
     Wide<L> off, reach;
+    std::uint32_t decides;
 
     HWY_INLINE Spread(const Wide<L>& d_p, const Wide<L>& d_q, float s)
     {
-        const auto D = (d_p + d_q) + Wide<L>::all(2 * s);
+        const auto D = (d_p + d_q) + Wide<L>::all(5 * s);
         off = fma(D, Wide<L>::all(unit_roundoff_of<float>), Wide<L>::all(s));
         reach = fma(off, Wide<L>::all(root_3), D);
+        decides = bits_where_greater(Wide<L>::all(greatest_span), D);
     }
     /// The margin of a determinant of edges of x and y, and a difference between the two triangles.
     HWY_INLINE Wide<L> margin(const Wide<L>& length, const Triangles<L>& x, const Triangles<L>& y) const
     {
-        const auto bend = Wide<L>::all(root_3) * fma(x.h, fma(y.h, Wide<L>::all(root_3), y.d), x.d * y.h);
+        const auto product = fma(x.h, fma(y.h, Wide<L>::all(root_3), y.d), x.d * y.h);
+        const auto bend = fma(product, Wide<L>::all(root_3), Wide<L>::all(margin_underflow));
         return fma(fma(off, length, reach * bend), Wide<L>::all(margin_factor), Wide<L>::all(margin_underflow));
     }
 };
@@ -119,14 +122,14 @@ struct Answer {
 template <std::size_t L> HWY_INLINE Answer intersect_lanes(Triangles<L>& p, Triangles<L>& q, std::uint32_t left, float s)
 {
     const Spread<L> spread(p.d, q.d, s);
-    std::uint32_t above_p[3], above_q[3], certain = left;
+    std::uint32_t above_p[3], above_q[3], certain = left & spread.decides;
     auto sides = [&](const Triangles<L>& plane, const Triangles<L>& points, std::uint32_t (&above)[3]) HWY_ATTR {
         Point<L> e, f;
         subtract<L>(plane.corner[1], plane.corner[0], e);
         subtract<L>(plane.corner[2], plane.corner[0], f);
         const Normal<L> normal(e, f);
         const auto margin = spread.margin(normal.length, plane, plane);
-        std::uint32_t all_above = ~0u, all_below = ~0u;
+        std::uint32_t all_above = spread.decides, all_below = spread.decides;
         for (std::size_t c = 0; c < 3; ++c) {
             const Side side = normal.side(plane.corner[0], points.corner[c], margin);
             above[c] = side.above;
