@@ -14,7 +14,10 @@ namespace {
 
 constexpr std::string_view format = "cinch 2";
 
-std::string escaped(const std::string& text) { return nlohmann::json(text).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace); }
+std::string escaped(const std::string& text)
+{
+    return nlohmann::json(text).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+}
 
 /// Builds one line of JSON in a buffer that is reused.
 class Line {
@@ -104,7 +107,9 @@ std::string hash_of_weights(const DeformableSurface& surface)
 
 std::string hash_of_method(const Claim& claim, std::string_view shape)
 {
-    auto as_shown = [](const std::string& text) { return nlohmann::json::parse(escaped(text)).get<std::string>(); }; // valid UTF-8
+    auto as_shown = [](const std::string& text) { // valid UTF-8
+        return nlohmann::json::parse(escaped(text)).get<std::string>();
+    };
     Sha256 hash;
     hash.add_text(format);
     hash.add_text(name_of(claim.methods));
@@ -127,20 +132,24 @@ struct CertificateWriter::Parts {
     Sha256 transforms;
 };
 
-CertificateWriter::CertificateWriter(const DeformableSurface& surface, const Bvh& bvh, const Claim& claim, LineSink sink)
+CertificateWriter::CertificateWriter(const DeformableSurface& surface, const Bvh& bvh, const Claim& claim,
+                                     LineSink sink)
     : parts_(new Parts{Line(std::move(sink)), bvh.bvs.size(), static_cast<std::size_t>(claim.kdop), claim.frames, 0,
                        claim.methods.within(box_methods) && claim.shape == RestShape::aabb, 0, 0, 0, {}})
 {
     Line& line = parts_->line;
     const std::string_view shape = claim.shape == RestShape::aabb ? "aabb" : "obb";
-    line.raw("{\"certificate\":\"").raw(format).raw("\",\"method\":\"").raw(name_of(claim.methods)).raw("\",\"rest_shape\":\"").raw(shape);
-    line.raw("\",\"kdop\":").integer(parts_->kdop).raw(",\"vertices\":").integer(surface.mesh.vertices.size());
-    line.raw(",\"triangles\":").integer(surface.mesh.triangles.size()).raw(",\"nodes\":").integer(surface.weights.node_count);
-    line.raw(",\"bvs\":").integer(bvh.bvs.size()).raw(",\"frames\":").integer(claim.frames).raw(",\"clip\":").text(claim.clip);
+    line.raw("{\"certificate\":\"").raw(format).raw("\",\"method\":\"").raw(name_of(claim.methods));
+    line.raw("\",\"rest_shape\":\"").raw(shape).raw("\",\"kdop\":").integer(parts_->kdop);
+    line.raw(",\"vertices\":").integer(surface.mesh.vertices.size());
+    line.raw(",\"triangles\":").integer(surface.mesh.triangles.size());
+    line.raw(",\"nodes\":").integer(surface.weights.node_count).raw(",\"bvs\":").integer(bvh.bvs.size());
+    line.raw(",\"frames\":").integer(claim.frames).raw(",\"clip\":").text(claim.clip);
     line.raw(claim.missing.empty() ? ",\"partial\":false" : ",\"partial\":true").raw(",\"missing\":");
     line.array(claim.missing, [&](const std::string& part) { line.text(part); });
-    line.raw(",\"sha256\":{\"positions\":\"").raw(hash_of_positions(surface)).raw("\",\"triangles\":\"").raw(hash_of_triangles(surface));
-    line.raw("\",\"weights\":\"").raw(hash_of_weights(surface)).raw("\",\"method\":\"").raw(hash_of_method(claim, shape)).raw("\"}}").end();
+    line.raw(",\"sha256\":{\"positions\":\"").raw(hash_of_positions(surface));
+    line.raw("\",\"triangles\":\"").raw(hash_of_triangles(surface)).raw("\",\"weights\":\"").raw(hash_of_weights(surface));
+    line.raw("\",\"method\":\"").raw(hash_of_method(claim, shape)).raw("\"}}").end();
     for (std::size_t k = 0; k < surface.mesh.vertices.size(); ++k) {
         const Weights::Row row = surface.weights.of(k);
         line.raw("{\"vertex\":").integer(k).raw(",\"rest\":").numbers({surface.mesh.vertices[k].data(), 3});
@@ -152,15 +161,17 @@ CertificateWriter::CertificateWriter(const DeformableSurface& surface, const Bvh
         const Bv& bv = bvh.bvs[i];
         line.raw("{\"bv\":").integer(i);
         if (bv.is_leaf())
-            line.raw(",\"triangles\":").integers(std::span(bvh.triangle).subspan(bv.first_triangle, bv.triangle_count)).raw("}").end();
+            line.raw(",\"triangles\":").integers(std::span(bvh.triangle).subspan(bv.first_triangle, bv.triangle_count));
         else
-            line.raw(",\"children\":[").integer(bv.first_child).raw(",").integer(bv.first_child + 1).raw("]}").end();
+            line.raw(",\"children\":[").integer(bv.first_child).raw(",").integer(bv.first_child + 1).raw("]");
+        line.raw("}").end();
     }
 }
 
 CertificateWriter::~CertificateWriter() = default;
 
-void CertificateWriter::frame(double time_s, std::span<const AffineMap> maps, std::span<const double> supports, const FrameVerdict& verdict)
+void CertificateWriter::frame(double time_s, std::span<const AffineMap> maps, std::span<const double> supports,
+                              const FrameVerdict& verdict)
 {
     Parts& p = *parts_;
     if (p.frames == p.frames_claimed || supports.size() != p.bvs * p.kdop || verdict.failed.size() != supports.size())
@@ -172,7 +183,8 @@ void CertificateWriter::frame(double time_s, std::span<const AffineMap> maps, st
     line.raw("{\"frame\":").integer(p.frames).raw(",\"time\":").number(time_s).raw(",\"maps\":");
     line.array(maps, [&](const AffineMap& map) { line.numbers({&map.m[0][0], 12}); }).raw("}").end();
     for (std::size_t i = 0; i < p.bvs; ++i) {
-        line.raw("{\"frame\":").integer(p.frames).raw(",\"bv\":").integer(i).raw(",\"bounds\":").numbers(supports.subspan(i * p.kdop, p.kdop));
+        line.raw("{\"frame\":").integer(p.frames).raw(",\"bv\":").integer(i);
+        line.raw(",\"bounds\":").numbers(supports.subspan(i * p.kdop, p.kdop));
         if (p.has_lambda) {
             line.raw(",\"lambda\":[");
             for (std::size_t slot = i * p.kdop; slot < (i + 1) * p.kdop; ++slot) {

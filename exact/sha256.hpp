@@ -17,7 +17,10 @@ class Sha256 {
 public:
     Sha256() { sha256_init(&state_); }
 
-    void add(std::string_view bytes) { sha256_update(&state_, bytes.size(), reinterpret_cast<const std::uint8_t*>(bytes.data())); }
+    void add(std::string_view bytes)
+    {
+        sha256_update(&state_, bytes.size(), reinterpret_cast<const std::uint8_t*>(bytes.data()));
+    }
     void add(std::uint32_t x) { add_bytes(x, 4); }
     void add(double x) { add_bytes(std::bit_cast<std::uint64_t>(x), 8); }
     template <class T> void add(std::span<const T> values)

@@ -26,6 +26,7 @@ the file's quotient, n the vertex's influences, and every frame one of the clip'
 Exit status: 0 accepted, 1 rejected or not understood, in one line, 2 wrong usage or files of --input that cannot be read.
 """
 import argparse
+import contextlib
 import gzip
 import sys
 import zlib
@@ -37,10 +38,15 @@ from certificate.records import Records  # noqa: E402
 from certificate.values import Rejected, plain, shown  # noqa: E402
 
 
+@contextlib.contextmanager
 def opened(name):
     """The bytes of a file, compressed or not."""
-    file = open(name, "rb")
-    return gzip.GzipFile(fileobj=file) if file.peek(2)[:2] == b"\x1f\x8b" else file
+    with open(name, "rb") as file:
+        if file.peek(2)[:2] == b"\x1f\x8b":
+            with gzip.GzipFile(fileobj=file) as unpacked:
+                yield unpacked
+        else:
+            yield file
 
 
 def check(name, tie=None, progress=lambda text: None):

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The files of check_certificate.py --input: readers of their own for meshes (OBJ, OFF) and for the text form of skins, and what of
-a certificate is compared with them."""
+"""The files of --input: readers of their own for meshes (OBJ, OFF) and skins as text, and what is compared with them."""
 import math
 import os
 import re
@@ -9,6 +8,7 @@ from fractions import Fraction
 from certificate.values import ONE, plain, require, shown
 
 SCALED_HALF = 1.2  # longest half extent of meshes with a scripted motion
+CENTRED = f"centred and scaled to a longest half extent of {SCALED_HALF}"
 
 
 class Unreadable(Exception):
@@ -124,7 +124,7 @@ def read_obj(name):
 
 
 def read_off(name):
-    """One vertex and one face per line, with whatever follows them; or, where that does not fit, number after number."""
+    """One vertex and one face per line, with whatever follows; or, where that does not fit, number after number."""
     lines = [(number, line) for number, line in lines_of(name) if words_of(line)]
     try:
         return off_by_lines(name, lines)
@@ -222,7 +222,8 @@ def read_clips(name):
     words = Words(name, lines_of(name))
     clips = []
     for _ in range(words.integer("the number of clips", 1)):
-        clip, count, nodes = words.word("the name of a clip"), words.integer("the number of frames", 1), words.integer("the number of nodes", 1)
+        clip = words.word("the name of a clip")
+        count, nodes = words.integer("the number of frames", 1), words.integer("the number of nodes", 1)
         frames = []
         for _ in range(count):
             time = words.double("a time")
@@ -256,11 +257,13 @@ class Tie:
         if surface.positions != self.positions:
             self.scaled = not self.weights and surface.positions == centred_and_scaled(self.positions)
             require(self.scaled, "its positions are not those of {}{}", plain(self.names[0]),
-                    "" if self.weights else f", neither as they are nor centred and scaled to a longest half extent of {SCALED_HALF}")
+                    "" if self.weights else f", neither as they are nor {CENTRED}")
         if self.weights:
-            require(len(self.weights) == len(surface.rows), "{} has weights of {} vertices", plain(self.names[1]), len(self.weights))
+            require(len(self.weights) == len(surface.rows),
+                    "{} has weights of {} vertices", plain(self.names[1]), len(self.weights))
             for k, (row, given) in enumerate(zip(surface.rows, self.weights)):
-                require(same_weights({j: u for j, u, _ in row}, given), "the weights of vertex {} are not those of {}", k, plain(self.names[1]))
+                require(same_weights({j: u for j, u, _ in row}, given),
+                        "the weights of vertex {} are not those of {}", k, plain(self.names[1]))
 
     def frame(self, name, time, maps):
         if not self.clips:
@@ -270,17 +273,17 @@ class Tie:
         self.of = len(frames)
         while self.at < len(frames) and frames[self.at] != (time, maps):
             self.at += 1
-        require(self.at < len(frames), "the frame is none of those of clip {} in {}, or not in their order", shown(name), plain(self.names[2]))
+        require(self.at < len(frames),
+                "the frame is none of those of clip {} in {}, or not in their order", shown(name), plain(self.names[2]))
         self.clip, self.at, self.count = name, self.at + 1, self.count + 1
 
-    def end(self):
-        pass
-
     def lines(self):
-        own = "" if self.weights else "; weights and transforms are the certificate's own"
-        yield f"triangles and positions are those of {plain(self.names[0])}{f', centred and scaled to a longest half extent of {SCALED_HALF}' if self.scaled else ''}{own}"
-        if self.weights:
-            yield f"weights are those of {plain(self.names[1])}, normalised; transforms are {self.count} of {self.of} of clip {shown(self.clip)} in {plain(self.names[2])}"
+        mesh, weights, clips = (plain(name) if name else None for name in self.names)
+        own = "" if weights else "; weights and transforms are the certificate's own"
+        yield f"triangles and positions are those of {mesh}{f', {CENTRED}' if self.scaled else ''}{own}"
+        if weights:
+            yield (f"weights are those of {weights}, normalised; "
+                   f"transforms are those of {self.count} of {self.of} frames of clip {shown(self.clip)} in {clips}")
 
 
 def same_weights(units, given):

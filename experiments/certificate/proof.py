@@ -7,7 +7,8 @@ import sys
 
 from certificate.records import FORMAT, HEADER, Header, hashes
 from certificate.surface import RestBounds, Surface
-from certificate.values import WEIGHT_BITS, bits_after_point, double, double_or_ratio, least_doubles, listed, plain, require, scaled, shown, whole
+from certificate.values import (WEIGHT_BITS, Rejected, bits_after_point, double, double_or_ratio, in_order, least_doubles, listed,
+                                plain, require, scaled, shown, whole)
 
 
 class FrameProof:
@@ -22,11 +23,15 @@ class FrameProof:
             for r in (3, 7, 11):
                 m[r] <<= checker.rest_bits
         if checker.rest_bounds:  # per axis and simulation node: A^T axis, 2 axis . t
-            self.columns = [[[sum(a * m[4 * r + s] for r, a in enumerate(axis) if a) << (s == 3) for s in range(4)] for m in self.units]
+            def column(axis, m, s):
+                return sum(a * m[4 * r + s] for r, a in enumerate(axis) if a)
+            self.columns = [[(*(column(axis, m, s) for s in range(3)), 2 * column(axis, m, 3)) for m in self.units]
                             for axis in checker.header.axes]
         surface = checker.surface
-        self.of_vertex = [list(map(max, self.exact(v), self.computed(v))) if used else None for v, used in enumerate(checker.used)]
-        self.supports = surface.merged(lambda vs: [max(column) for column in zip(*(self.of_vertex[v] for v in vs))], lambda a, b: list(map(max, a, b)))
+        of_vertex = [list(map(max, self.exact(v), self.computed(v))) if used else None
+                     for v, used in enumerate(checker.used)]
+        self.supports = surface.merged(lambda vs: [max(all_of) for all_of in zip(*(of_vertex[v] for v in vs))],
+                                       lambda a, b: list(map(max, a, b)))
 
     def exact(self, v):
         """Per direction the least double that holds vertex v in real arithmetic."""
@@ -84,15 +89,18 @@ class FrameProof:
                     if bounds[d] is not None:
                         p, q = bounds[d].as_integer_ratio()
                         above, below = self.dual(b[d % 2], intervals, lambdas[d])
-                        require(p * below >= above * q, "direction {}: the bound {} lies below D(lambda)", d, bounds[d].hex())
+                        require(p * below >= above * q,
+                                "direction {}: the bound {} lies below D(lambda)", d, bounds[d].hex())
 
     def explain(self, i, d, bound):
         for v in self.checker.surface.vertices_of(i):
             for kind, support in (("in real arithmetic", self.exact), ("as computed", self.computed)):
-                require(bound >= support(v)[d], "direction {}: vertex {} {} lies beyond the bound {}", d, v, kind, bound.hex())
+                require(bound >= support(v)[d],
+                        "direction {}: vertex {} {} lies beyond the bound {}", d, v, kind, bound.hex())
+        raise Rejected(f"direction {d}: a vertex lies beyond the bound {bound.hex()}")
 
     def extrema(self, i, nodes, columns):
-        """Exact extrema of the moved rest box along the axis and against it, per simulation node, in units of 2^-(bits + 1)."""
+        """Exact extrema of the moved rest box along the axis and against it, per node, in units of 2^-(bits + 1)."""
         low, high = self.checker.rest_bounds.low[i], self.checker.rest_bounds.high[i]
         c0, c1, c2 = (h + l for l, h in zip(low, high))
         e0, e1, e2 = (h - l for l, h in zip(low, high))
@@ -126,7 +134,8 @@ class Checker:
     """Reads and proves a whole certificate. `tie` compares with files of --input; see files.py."""
 
     def __init__(self, records, tie=None, progress=lambda text: None):
-        require(1e16 + 2.9999 == 10000000000000002.0 and sys.float_info.mant_dig == 53, "this machine's floats are no IEEE doubles")
+        require(1e16 + 2.9999 == 10000000000000002.0 and sys.float_info.mant_dig == 53,
+                "this machine's floats are no IEEE doubles")
         self.records, self.tie = records, tie
         self.header = header = Header(records.expect("a header", HEADER))
         progress("surface")
@@ -145,15 +154,14 @@ class Checker:
         for f in range(header.frames):
             progress(f"frame {f + 1} of {header.frames}")
             self.check_frame(f, transforms)
-        if tie:
-            tie.end()
         self.check_end(transforms)
 
     def check_frame(self, f, transforms):
         record = self.records.expect(f"frame {f}", {"frame", "time", "maps"})
-        require(record["frame"] == f and type(record["frame"]) is int, "frame {} where {} should follow", shown(record["frame"]), f)
+        in_order("frame", record["frame"], f)
         time = double(record["time"])
-        maps = [[double(x) for x in listed(m, 12, "a transform")] for m in listed(record["maps"], self.header.nodes, "maps")]
+        maps = listed(record["maps"], self.header.nodes, "maps")
+        maps = [[double(x) for x in listed(m, 12, "a transform")] for m in maps]
         transforms.update(struct.pack("<d", time))
         for m in maps:
             transforms.update(struct.pack("<12d", *m))
@@ -164,13 +172,14 @@ class Checker:
         keys = {"frame", "bv", "bounds", "lambda"} if duality else {"frame", "bv", "bounds"}
         for i in range(self.header.bvs):
             record = self.records.expect(f"BV {i} of frame {f}", keys)
-            require(record["frame"] == f and record["bv"] == i and type(record["frame"]) is type(record["bv"]) is int,
-                    "frame {}, BV {} where {}, {} should follow", shown(record["frame"]), shown(record["bv"]), f, i)
+            in_order("frame", record["frame"], f)
+            in_order("BV", record["bv"], i)
             bounds = [None if x == "inf" else double(x) for x in listed(record["bounds"], k, "bounds")]
             infinite = bounds.count(None)
             self.infinite += infinite
             self.proven += k - infinite
-            proof.check(i, bounds, [double_or_ratio(x) for x in listed(record["lambda"], k, "lambda")] if duality else None)
+            lambdas = [double_or_ratio(x) for x in listed(record["lambda"], k, "lambda")] if duality else None
+            proof.check(i, bounds, lambdas)
 
     def check_end(self, transforms):
         record = self.records.expect("the end", {"end", "frames", "proven", "infinite", "violated", "sha256"})
@@ -178,8 +187,10 @@ class Checker:
         violated = whole(record["violated"], 0, 1 << 62, "violated")
         require(not violated, "the run that wrote it found {} bounds violated", violated)
         for name, found in (("frames", self.header.frames), ("proven", self.proven), ("infinite", self.infinite)):
-            require(record[name] == found and type(record[name]) is int, "it ends with {} {}, but there are {}", name, shown(record[name]), found)
-        require(hashes(record["sha256"], {"transforms"})["transforms"] == transforms.hexdigest(), "the SHA-256 of the transforms is another than stated")
+            require(record[name] == found and type(record[name]) is int,
+                    "it ends with {} {}, but there are {}", name, shown(record[name]), found)
+        require(hashes(record["sha256"], {"transforms"})["transforms"] == transforms.hexdigest(),
+                "the SHA-256 of the transforms is another than stated")
         require(self.records.next(set()) is None, "something follows the end")
 
     def verdict(self):

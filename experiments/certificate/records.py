@@ -15,7 +15,8 @@ METHODS = ("convex", "sphere", "corners", "eq12", "limited", "local", "support",
 BOX_METHODS = {"convex", "corners", "eq12", "limited"}
 LONGEST_LINE = 1 << 28  # bytes; a record holds one BV or the transforms of one frame
 HASHES = {"positions", "triangles", "weights", "method"}
-HEADER = {"certificate", "method", "rest_shape", "kdop", "vertices", "triangles", "nodes", "bvs", "frames", "clip", "partial", "missing", "sha256"}
+HEADER = {"certificate", "method", "rest_shape", "kdop", "vertices", "triangles", "nodes", "bvs", "frames", "clip",
+          "partial", "missing", "sha256"}
 
 
 def unique(pairs):
@@ -61,8 +62,10 @@ class Records:
         keys = record.keys()
         if not any(keys == wanted for wanted in keys_of):
             wanted = min(keys_of, key=lambda w: len(w ^ keys))
-            for name, why in [(n, "is missing") for n in sorted(wanted - keys)] + [(n, "does not belong here") for n in sorted(keys - wanted)]:
-                raise Rejected(f"{shown(name)} {why}")
+            for name in sorted(wanted - keys):
+                raise Rejected(f"{shown(name)} is missing")
+            for name in sorted(keys - wanted):
+                raise Rejected(f"{shown(name)} does not belong here")
         return record
 
     def expect(self, what, *keys_of):
@@ -86,8 +89,8 @@ class Header:
             whole(record[name], 1, MOST_INDEX, name) for name in ("vertices", "triangles", "nodes", "bvs", "frames"))
         self.clip = text(record["clip"], "clip")
         self.missing = [text(part, "a missing part") for part in listed(record["missing"], None, "missing")]
-        require(type(record["partial"]) is bool and record["partial"] == bool(self.missing), "partial is {}, but {} parts are missing",
-                shown(record["partial"]), len(self.missing))
+        require(type(record["partial"]) is bool and record["partial"] == bool(self.missing),
+                "partial is {}, but {} parts are missing", shown(record["partial"]), len(self.missing))
         self.sha256 = hashes(record["sha256"], HASHES)
         method = hashlib.sha256()
         for part in (FORMAT, record["method"], shape, str(kdop), self.clip, *self.missing):
@@ -102,5 +105,6 @@ class Header:
 def hashes(record, names):
     require(type(record) is dict and record.keys() == names, "sha256 does not have {}", ", ".join(sorted(names)))
     for name, value in record.items():
-        require(type(value) is str and re.fullmatch("[0-9a-f]{64}", value), "the SHA-256 of the {} is {}", name, shown(value))
+        require(type(value) is str and re.fullmatch("[0-9a-f]{64}", value),
+                "the SHA-256 of the {} is {}", name, shown(value))
     return record

@@ -4,7 +4,7 @@ import array
 import hashlib
 import struct
 
-from certificate.values import ONE, double, listed, require, shown, weight_units, whole
+from certificate.values import ONE, double, in_order, listed, require, weight_units, whole
 
 
 class Surface:
@@ -15,7 +15,7 @@ class Surface:
         positions, weights, triangles = hashlib.sha256(), hashlib.sha256(), hashlib.sha256()
         for k in range(header.vertices):
             record = records.expect(f"vertex {k}", {"vertex", "rest", "nodes", "weights"})
-            require(record["vertex"] == k and type(record["vertex"]) is int, "vertex {} where {} should follow", shown(record["vertex"]), k)
+            in_order("vertex", record["vertex"], k)
             rest = [double(x) for x in listed(record["rest"], 3, "rest")]
             nodes = [whole(j, 0, header.nodes - 1, "a simulation node") for j in listed(record["nodes"], None, "nodes")]
             require(all(a < b for a, b in zip(nodes, nodes[1:])), "the simulation nodes do not ascend")
@@ -24,10 +24,11 @@ class Surface:
             self.positions.append(rest)
             self.rows.append([(j, u, w) for j, (u, w) in zip(nodes, row)])
             positions.update(struct.pack("<3d", *rest))
-            weights.update(struct.pack(f"<I{len(nodes)}I{len(nodes)}d", len(nodes), *nodes, *(w for _, w in row)))
+            n = len(nodes)
+            weights.update(struct.pack(f"<I{n}I{n}d", n, *nodes, *(w for _, w in row)))
         for t in range(header.triangles):
             record = records.expect(f"triangle {t}", {"triangle", "vertices"})
-            require(record["triangle"] == t and type(record["triangle"]) is int, "triangle {} where {} should follow", shown(record["triangle"]), t)
+            in_order("triangle", record["triangle"], t)
             corners = [whole(v, 0, header.vertices - 1, "a vertex") for v in listed(record["vertices"], 3, "vertices")]
             self.triangles.append(tuple(corners))
             triangles.update(struct.pack("<3I", *corners))
@@ -38,10 +39,11 @@ class Surface:
     def read_bvs(self, header, records):
         """Per BV the pair of its children, or the ascending vertices of a leaf."""
         self.children, self.corners = [], []
+        require(header.bvs < 2 * header.triangles, "{} BVs over {} triangles", header.bvs, header.triangles)
         seen, parents, count = bytearray(header.triangles), bytearray(header.bvs), 0
         for i in range(header.bvs):
             record = records.expect(f"BV {i}", {"bv", "triangles"}, {"bv", "children"})
-            require(record["bv"] == i and type(record["bv"]) is int, "BV {} where {} should follow", shown(record["bv"]), i)
+            in_order("BV", record["bv"], i)
             if "children" in record:
                 pair = [whole(c, i + 1, header.bvs - 1, "a child") for c in listed(record["children"], 2, "children")]
                 for c in pair:
@@ -73,9 +75,9 @@ class Surface:
                 yield from self.corners[i]
 
     def merged(self, of_leaf, of_pair):
-        """Per BV: of_leaf(vertices) of leaves, of_pair(child, child) of the others; children come after their parents."""
+        """Per BV: of_leaf(vertices) of leaves, of_pair(child, child) of the others."""
         out = [None] * len(self.children)
-        for i in range(len(out) - 1, -1, -1):
+        for i in range(len(out) - 1, -1, -1):  # children come after their parents
             pair = self.children[i]
             out[i] = of_pair(out[pair[0]], out[pair[1]]) if pair else of_leaf(self.corners[i])
         return out
@@ -86,8 +88,8 @@ class RestBounds:
 
     def __init__(self, surface, units):
         """units: rest positions as whole numbers."""
-        self.low = surface.merged(lambda vs: [min(units[v][s] for v in vs) for s in range(3)], lambda a, b: list(map(min, a, b)))
-        self.high = surface.merged(lambda vs: [max(units[v][s] for v in vs) for s in range(3)], lambda a, b: list(map(max, a, b)))
+        self.low, self.high = (surface.merged(lambda vs: [end(units[v][s] for v in vs) for s in range(3)],
+                                              lambda a, b: list(map(end, a, b))) for end in (min, max))
         self.intervals = [None] * len(surface.children)  # per BV: nodes ascending, l, h in units of 2^-53
         held = [None] * len(surface.children)
         for i in range(len(held) - 1, -1, -1):
@@ -100,7 +102,8 @@ class RestBounds:
                     first = self.union(first, other)
                 held[i] = first
             nodes = sorted(held[i])
-            self.intervals[i] = (array.array("I", nodes), array.array("q", (held[i][j][0] for j in nodes)), array.array("q", (held[i][j][1] for j in nodes)))
+            low, high = (array.array("q", (held[i][j][end] for j in nodes)) for end in (0, 1))
+            self.intervals[i] = array.array("L", nodes), low, high
 
     @staticmethod
     def union(a, b):

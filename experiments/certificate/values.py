@@ -27,13 +27,19 @@ def shown(value):
 
 
 def whole(value, least, most, what):
-    require(type(value) is int and least <= value <= most, "{} is {}, not a whole number from {} to {}", what, shown(value), least, most)
+    require(type(value) is int and least <= value <= most,
+            "{} is {}, not a whole number from {} to {}", what, shown(value), least, most)
     return value
 
 
 def listed(value, length, what):
-    require(type(value) is list and (length is None or len(value) == length), "{} is no list{}", what, f" of {length}" if length else "")
+    require(type(value) is list and (length is None or len(value) == length),
+            "{} is no list{}", what, "" if length is None else f" of {length}")
     return value
+
+
+def in_order(what, index, wanted):
+    require(type(index) is int and index == wanted, "{} {} where {} should follow", what, shown(index), wanted)
 
 
 def text(value, what):
@@ -58,14 +64,16 @@ def double(value):
             if spelt and (spelt[1] or spelt[2]):
                 units, exponent = int(spelt[1] + spelt[2], 16), int(spelt[3] or 0) - 4 * len(spelt[2])
                 zeros = (units & -units).bit_length() - 1 if units else 0
-                if not units or ((units >> zeros).bit_length() <= 53 and exponent + zeros >= -1074 and exponent + units.bit_length() <= 1024):
+                if not units or ((units >> zeros).bit_length() <= 53 and exponent + zeros >= -1074 and
+                                 exponent + units.bit_length() <= 1024):
                     return float.fromhex(value)
         except OverflowError:
             pass
     raise Rejected(f"{shown(value)} is no hexadecimal float whose value is a double")
 
 
-RATIO = re.compile(r"(-?[0-9]{1,1500})/([0-9]{1,1500})").fullmatch  # differences of products of doubles have fewer than 1,300 digits
+# An extremum is a sum of products of two doubles: below 2^2060, in units of at least 2^-2150, so under 1,300 digits.
+RATIO = re.compile(r"(-?[0-9]{1,1500})/([0-9]{1,1500})").fullmatch
 
 
 def double_or_ratio(value):
@@ -82,7 +90,8 @@ def weight_units(value):
     """A positive weight as a whole number of 2^-53, and as the double."""
     weight = double(value)
     units = weight * ONE
-    require(1 <= units <= ONE and units == int(units), "weight {} is no positive multiple of 2^-53 up to 1", shown(value))
+    require(1 <= units <= ONE and units == int(units),
+            "weight {} is no positive multiple of 2^-53 up to 1", shown(value))
     return int(units), weight
 
 
@@ -97,14 +106,17 @@ def scaled(x, bits):
 
 
 def least_doubles(units, bits):
-    """The least doubles that are at least +x and -x, x = units * 2^-bits. So a double is at least x if it is at least the first."""
+    """The least doubles that are at least +x and -x, x = units * 2^-bits: a double is at least x if and only if it is
+    at least the first."""
     try:
         nearest = units / (1 << bits)
     except OverflowError:
         return (math.inf, -GREATEST) if units > 0 else (-GREATEST, math.inf)
     p, q = nearest.as_integer_ratio()
     difference = (p << bits) - units * q
-    return (nearest if difference >= 0 else math.nextafter(nearest, math.inf)), -(nearest if difference <= 0 else math.nextafter(nearest, -math.inf))
+    above = nearest if difference >= 0 else math.nextafter(nearest, math.inf)
+    below = nearest if difference <= 0 else math.nextafter(nearest, -math.inf)
+    return above, -below
 
 
 def plain(name):

@@ -12,6 +12,11 @@ def doubles(texts):
     return struct.pack(f"<{len(texts)}d", *map(float.fromhex, texts))
 
 
+def in_utf8(text):
+    """Of texts that JSON can spell and UTF-8 cannot, too."""
+    return text.encode("utf-8", "surrogatepass")
+
+
 def header(records):
     return records[0]
 
@@ -40,7 +45,7 @@ def sealed(records):
     for i in frames:
         sha["transforms"].update(doubles([records[i]["time"]]) + b"".join(map(doubles, records[i]["maps"])))
     for part in ("cinch 2", first["method"], first["rest_shape"], str(first["kdop"]), first["clip"], *first["missing"]):
-        sha["method"].update(b"%d:%b" % (len(part.encode()), part.encode()))
+        sha["method"].update(b"%d:%b" % (len(in_utf8(part)), in_utf8(part)))
     first.update(vertices=len(vertices), triangles=len(triangles), frames=len(frames), bvs=len([i for i in of(records, "bv") if "bounds" not in records[i]]))
     first["sha256"] = {name: sha[name].hexdigest() for name in ("positions", "triangles", "weights", "method")}
     infinite = sum(records[i]["bounds"].count("inf") for i in bounds)
