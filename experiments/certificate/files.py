@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The files of --input: readers of their own for meshes (OBJ, OFF) and skins as text, and what is compared with them."""
+"""The files of --input: readers of their own for meshes (OBJ, OFF) and skins as text, and the comparison with them."""
 import math
 import os
 import re
