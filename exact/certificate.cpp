@@ -148,7 +148,8 @@ CertificateWriter::CertificateWriter(const DeformableSurface& surface, const Bvh
     line.raw(claim.missing.empty() ? ",\"partial\":false" : ",\"partial\":true").raw(",\"missing\":");
     line.array(claim.missing, [&](const std::string& part) { line.text(part); });
     line.raw(",\"sha256\":{\"positions\":\"").raw(hash_of_positions(surface));
-    line.raw("\",\"triangles\":\"").raw(hash_of_triangles(surface)).raw("\",\"weights\":\"").raw(hash_of_weights(surface));
+    line.raw("\",\"triangles\":\"").raw(hash_of_triangles(surface));
+    line.raw("\",\"weights\":\"").raw(hash_of_weights(surface));
     line.raw("\",\"method\":\"").raw(hash_of_method(claim, shape)).raw("\"}}").end();
     for (std::size_t k = 0; k < surface.mesh.vertices.size(); ++k) {
         const Weights::Row row = surface.weights.of(k);

@@ -25,23 +25,24 @@ struct Claim {
     std::vector<std::string> missing; ///< parts of the input that the surface lacks; any make the certificate partial
 };
 
-/// Writes a certificate: JSON Lines that carry everything needed to prove the bounds again without this program. Doubles are
-/// texts of hexadecimal floats; hashes are SHA-256 over little-endian numbers, of 4 bytes (indices, counts) and 8 (doubles).
-/// In this order:
+/// Writes a certificate: JSON Lines that carry everything needed to prove the bounds again without this program. Doubles
+/// are texts of hexadecimal floats; hashes are SHA-256 over little-endian numbers, of 4 bytes (indices, counts) and 8
+/// (doubles). In this order:
 ///
-///   {"certificate":"cinch 2", "method", "rest_shape", "kdop", "vertices", "triangles", "nodes", "bvs", "frames", "clip",
-///    "partial", "missing", "sha256": {"positions", "triangles", "weights", "method"}}
+///   {"certificate":"cinch 2", "method", "rest_shape", "kdop", "vertices", "triangles", "nodes", "bvs", "frames",
+///    "clip", "partial", "missing", "sha256": {"positions", "triangles", "weights", "method"}}
 ///   per vertex        {"vertex", "rest", "nodes", "weights"}
 ///   per triangle      {"triangle", "vertices"}
 ///   per BV            {"bv", "triangles": indices of a leaf's, or "children"}
 ///   per frame         {"frame", "time": seconds, "maps": 12 numbers per simulation node, row-major}
 ///     and per BV      {"frame", "bv", "bounds", "lambda"}, k of each, in the order of axes_of(k)
-///   last              {"end":"cinch 2", "frames", "proven", "infinite", "violated": numbers of bounds, "sha256": {"transforms"}}
+///   last              {"end":"cinch 2", "frames", "proven", "infinite", "violated": numbers of bounds,
+///                      "sha256": {"transforms"}}
 ///
-/// The hash of weights is over each vertex's count, simulation nodes and weights, that of transforms over each frame's time and
-/// maps, that of the method over format, method, rest shape, k, clip and missing, each as its length, a colon and its bytes.
-/// "lambda" is there for the box_methods over axis-aligned rest boxes: D(λ) ≤ bound; where no double λ does it, λ is "p/q".
-/// Rest boxes and weight intervals are not in it: whoever checks it derives them from the vertices.
+/// The hash of weights is over each vertex's count, simulation nodes and weights, that of transforms over each frame's
+/// time and maps, that of the method over format, method, rest shape, k, clip and missing, each as its length, a colon
+/// and its bytes. "lambda" is there for the box_methods over axis-aligned rest boxes: D(λ) ≤ bound; where no double λ does
+/// it, λ is "p/q". Rest boxes and weight intervals are not in it: whoever checks it derives them from the vertices.
 class CertificateWriter {
 public:
     /// Writes all that does not change from frame to frame.
@@ -49,7 +50,8 @@ public:
     ~CertificateWriter();
 
     /// `verdict` is Verifier::check's of these supports. Throws std::invalid_argument for what is no frame of the claim.
-    void frame(double time_s, std::span<const AffineMap> maps, std::span<const double> supports, const FrameVerdict& verdict);
+    void frame(double time_s, std::span<const AffineMap> maps, std::span<const double> supports,
+               const FrameVerdict& verdict);
     /// After the last of the frames claimed; a certificate without an end proves nothing.
     void end();
 

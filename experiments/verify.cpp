@@ -113,7 +113,13 @@ void verify_body(const Input& input, const VerifyOptions& options, LineFile* cer
         totals.volumes.resize(totals.levels.size());
     std::optional<exact::CertificateWriter> proof;
     if (certificate)
-        proof.emplace(input.surface, bvh, exact::Claim{options.methods, options.kdop, options.rest_shape, input.clip.name, input.clip.frames.size(), {}},
+        proof.emplace(input.surface, bvh,
+                      exact::Claim{.methods = options.methods,
+                                   .kdop = options.kdop,
+                                   .shape = options.rest_shape,
+                                   .clip = input.clip.name,
+                                   .frames = input.clip.frames.size(),
+                                   .missing = {}},
                       [=](std::string_view text) { certificate->line(text); });
 
     const std::size_t before = totals.frames;

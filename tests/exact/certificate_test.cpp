@@ -37,8 +37,8 @@ TEST_CASE("a certificate counts its bounds, says what is missing, and has an end
     const FrameVerdict good = Verifier(e.surface, bvh).check(e.frames[1], Method::limited, 6, supports);
 
     std::vector<json> lines;
-    CertificateWriter writer(e.surface, bvh, {Method::limited, 6, RestShape::aabb, "walk", 2, {"morph \"a\"\n", "\xff"}},
-                             [&](std::string_view line) { lines.push_back(json::parse(line)); });
+    const Claim claim{Method::limited, 6, RestShape::aabb, "walk", 2, {"morph \"a\"\n", "\xff"}};
+    CertificateWriter writer(e.surface, bvh, claim, [&](std::string_view line) { lines.push_back(json::parse(line)); });
     const json header = lines.front();
     CHECK(header["partial"] == true);
     CHECK(header["missing"] == json({"morph \"a\"\n", "\xef\xbf\xbd"})); // not UTF-8: the replacement character
@@ -68,7 +68,8 @@ TEST_CASE("only methods that are proven by duality have lambdas")
     const test::Example e = test::example(60, 6);
     const Bvh bvh = build_bvh(e.surface, 8);
     for (const RestShape shape : {RestShape::aabb, RestShape::obb})
-        for (const Methods methods : {Methods(Method::eq12), Method::eq12 | Method::convex, Method::eq12 | Method::local, Methods(Method::best)}) {
+        for (const Methods methods : {Methods(Method::eq12), Method::eq12 | Method::convex,
+                                      Method::eq12 | Method::local, Methods(Method::best)}) {
             std::vector<double> supports(bvh.bvs.size() * 14);
             RefitOptions options{methods, 14};
             options.rest_shape = shape;

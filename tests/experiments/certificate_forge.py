@@ -46,10 +46,12 @@ def sealed(records):
         sha["transforms"].update(doubles([records[i]["time"]]) + b"".join(map(doubles, records[i]["maps"])))
     for part in ("cinch 2", first["method"], first["rest_shape"], str(first["kdop"]), first["clip"], *first["missing"]):
         sha["method"].update(b"%d:%b" % (len(in_utf8(part)), in_utf8(part)))
-    first.update(vertices=len(vertices), triangles=len(triangles), frames=len(frames), bvs=len([i for i in of(records, "bv") if "bounds" not in records[i]]))
+    bvs = [i for i in of(records, "bv") if "bounds" not in records[i]]
+    first.update(vertices=len(vertices), triangles=len(triangles), frames=len(frames), bvs=len(bvs))
     first["sha256"] = {name: sha[name].hexdigest() for name in ("positions", "triangles", "weights", "method")}
     infinite = sum(records[i]["bounds"].count("inf") for i in bounds)
-    last.update(frames=len(frames), infinite=infinite, proven=sum(len(records[i]["bounds"]) for i in bounds) - infinite, violated=0)
+    proven = sum(len(records[i]["bounds"]) for i in bounds) - infinite
+    last.update(frames=len(frames), infinite=infinite, proven=proven, violated=0)
     last["sha256"] = {"transforms": sha["transforms"].hexdigest()}
     return records
 
@@ -60,7 +62,7 @@ def written(folder, lines, name="changed.jsonl"):
     if isinstance(lines, bytes):
         data = lines
     else:
-        data = "".join((line if isinstance(line, str) else json.dumps(line)) + "\n" for line in lines).encode("utf-8", "surrogatepass")
+        data = in_utf8("".join((line if isinstance(line, str) else json.dumps(line)) + "\n" for line in lines))
         if name.endswith(".gz"):
             data = gzip.compress(data)
     with open(path, "wb") as file:

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""MUTATIONS: name -> (change of a certificate's records, part of the reason to reject it). HARMLESS: name -> a change of nothing.
+"""MUTATIONS: name -> (change of a certificate's records, part of the reason to reject it).
+HARMLESS: name -> a change of nothing.
 
-Names with "sealed" carry hashes and counts that fit, so that what is wrong must be found itself; names with "of best" change the
-certificate of method best, the others that of limited. A change returns records, texts of lines, or bytes."""
+Names with "sealed" carry hashes and counts that fit, so that what is wrong must be found itself; names with "of best" change
+the certificate of method best, the others that of limited. A change returns records, texts of lines, or bytes."""
 import gzip
 import json
+import math
 import random
 import re
 
@@ -39,7 +41,8 @@ def field(key, path, value, reason, seal=False, name=None, which=3):
             target = target[step]
         target[path[-1]] = value(target[path[-1]]) if callable(value) else value
         return sealed(records) if seal else records
-    MUTATIONS[name or f"{key}: {'.'.join(map(str, path))} = {str(value)[:30]}" + (", sealed" if seal else "")] = change, reason
+    default = f"{key}: {'.'.join(map(str, path))} = {str(value)[:30]}" + (", sealed" if seal else "")
+    MUTATIONS[name or default] = change, reason
 
 
 def leaves(records):
@@ -171,7 +174,8 @@ field("rest", ["weights", 0], "0x1.0000000000001p-2", "positive multiple of 2^-5
 field("rest", ["weights", 0], "-0x1p-2", "positive multiple of 2^-53", seal=True)
 field("rest", ["weights", 0], "0x0p+0", "positive multiple of 2^-53", seal=True)
 field("rest", ["weights", 0], "0x1.8p+0", "positive multiple of 2^-53", seal=True)
-field("rest", ["weights", 0], lambda x: (float.fromhex(x) + (2.0**-53 if float.fromhex(x) < 0.5 else -(2.0**-53))).hex(), "do not sum to 1", seal=True, name="a weight moved by 2^-53, sealed")
+field("rest", ["weights", 0], lambda x: (float.fromhex(x) + math.copysign(2.0**-53, 0.5 - float.fromhex(x))).hex(),
+      "do not sum to 1", seal=True, name="a weight moved by 2^-53, sealed")
 field("rest", ["nodes", 0], 6, "simulation node", seal=True)
 field("rest", ["nodes", 0], -1, "a simulation node is -1", seal=False)
 field("rest", ["nodes"], lambda nodes: nodes[::-1], "do not ascend", seal=True, name="simulation nodes turned round, sealed")
@@ -188,13 +192,41 @@ def _(records):
 
 # ---- the header --------------------------------------------------------------------------------------------------------------
 
-for key, value, reason in (("certificate", "cinch 1", "the format is"), ("certificate", None, "the format is"), ("method", "eq12", "SHA-256 of the method"), ("method", "limited+limited", "method is"),
-                           ("method", "vertices", "SHA-256 of the method"), ("method", "better", "method is"), ("method", ["limited"], "method is"), ("method", "", "method is"),
-                           ("rest_shape", "obb", "SHA-256 of the method"), ("rest_shape", {}, "rest_shape is"), ("kdop", 7, "kdop is 7"), ("kdop", True, "kdop is True"), ("kdop", [], "kdop is []"),
-                           ("kdop", 14, "SHA-256 of the method"), ("vertices", 35, "is missing"), ("triangles", 0, "triangles is 0"), ("nodes", 5, "a simulation node is 5"),
-                           ("nodes", 7, "no list of 7"), ("bvs", 1, "a child is 1"), ("bvs", 10**9, "1000000000 BVs over 50 triangles"), ("frames", 2, "is missing"), ("frames", 4, "is missing"), ("frames", -1, "frames is -1"), ("frames", "3", "frames is"),
-                           ("frames", 10**30, "frames is 1000"), ("clip", "weak", "SHA-256 of the method"), ("clip", 5, "clip is 5"), ("partial", True, "partial is True"), ("partial", 0, "partial is 0"),
-                           ("missing", ["x"], "partial is False"), ("missing", "x", "no list"), ("sha256", {}, "sha256 does not have"), ("sha256", None, "sha256 does not have")):
+for key, value, reason in (
+    ("certificate", "cinch 1", "the format is"),
+    ("certificate", None, "the format is"),
+    ("method", "eq12", "SHA-256 of the method"),
+    ("method", "limited+limited", "method is"),
+    ("method", "vertices", "SHA-256 of the method"),
+    ("method", "better", "method is"),
+    ("method", ["limited"], "method is"),
+    ("method", "", "method is"),
+    ("rest_shape", "obb", "SHA-256 of the method"),
+    ("rest_shape", {}, "rest_shape is"),
+    ("kdop", 7, "kdop is 7"),
+    ("kdop", True, "kdop is True"),
+    ("kdop", [], "kdop is []"),
+    ("kdop", 14, "SHA-256 of the method"),
+    ("vertices", 35, "is missing"),
+    ("triangles", 0, "triangles is 0"),
+    ("nodes", 5, "a simulation node is 5"),
+    ("nodes", 7, "no list of 7"),
+    ("bvs", 1, "a child is 1"),
+    ("bvs", 10**9, "1000000000 BVs over 50 triangles"),
+    ("frames", 2, "is missing"),
+    ("frames", 4, "is missing"),
+    ("frames", -1, "frames is -1"),
+    ("frames", "3", "frames is"),
+    ("frames", 10**30, "frames is 1000"),
+    ("clip", "weak", "SHA-256 of the method"),
+    ("clip", 5, "clip is 5"),
+    ("partial", True, "partial is True"),
+    ("partial", 0, "partial is 0"),
+    ("missing", ["x"], "partial is False"),
+    ("missing", "x", "no list"),
+    ("sha256", {}, "sha256 does not have"),
+    ("sha256", None, "sha256 does not have"),
+):
     field("certificate", [key], value, reason)
 for name in ("positions", "triangles", "weights", "method"):
     field("certificate", ["sha256", name], lambda x: x[::-1], f"SHA-256 of the {name} is another", name=f"the SHA-256 of the {name} changed")
@@ -334,9 +366,15 @@ def moved(key, which, after_key, after):
     return change
 
 
-for name, change in {"a vertex between frames": moved("rest", 3, "bounds", 5), "the last vertex after the frames": moved("rest", -1, "bounds", -1),
-                     "a triangle between frames": moved("triangle", 3, "bounds", 5), "a BV after the first frame": moved("children", 0, "maps", 0),
-                     "a BV's bounds later": moved("bounds", 3, "bounds", 8), "two vertices exchanged": moved("rest", 3, "rest", 3), "the end before the last frame": moved("end", 0, "maps", 1)}.items():
+for name, change in {
+    "a vertex between frames": moved("rest", 3, "bounds", 5),
+    "the last vertex after the frames": moved("rest", -1, "bounds", -1),
+    "a triangle between frames": moved("triangle", 3, "bounds", 5),
+    "a BV after the first frame": moved("children", 0, "maps", 0),
+    "a BV's bounds later": moved("bounds", 3, "bounds", 8),
+    "two vertices exchanged": moved("rest", 3, "rest", 3),
+    "the end before the last frame": moved("end", 0, "maps", 1),
+}.items():
     MUTATIONS[name] = change, ""
 
 
@@ -351,19 +389,32 @@ inserted(None, lambda r: of(r, "rest")[3] + 1, "a vertex twice", "vertex 3 where
 inserted(None, lambda r: of(r, "bounds")[3] + 1, "bounds twice", "should follow")
 inserted({}, lambda r: 5, "an empty record", "is missing")
 inserted({"x": 1}, lambda r: 5, "an unknown record", "is missing")
-inserted({"vertex": 36, "rest": ["0x1p+0"] * 3, "nodes": [0], "weights": ["0x1p+0"]}, lambda r: of(r, "maps")[1], "a new vertex between frames", "")
+inserted({"vertex": 36, "rest": ["0x1p+0"] * 3, "nodes": [0], "weights": ["0x1p+0"]}, lambda r: of(r, "maps")[1],
+         "a new vertex between frames", "")
 inserted({}, len, "an empty record after the end", "something follows the end")
 inserted(None, len, "the end twice", "does not belong here")
+def without(key, which):
+    return lambda records: [r for i, r in enumerate(records) if i != (of(records, key) * 11)[which]]
+
+
 for which, name in ((0, "first"), (10, "eleventh"), (-1, "last")):
     for key in ("rest", "triangle", "bv", "maps", "bounds"):
-        MUTATIONS[f"without the {name} record with {key}"] = (lambda records, key=key, which=which: [r for i, r in enumerate(records) if i != (of(records, key) * 11)[which]]), ""
+        MUTATIONS[f"without the {name} record with {key}"] = without(key, which), ""
 
 
 # ---- the end -----------------------------------------------------------------------------------------------------------------
 
 MUTATIONS["no end"] = (lambda records: records[:-1]), "the file ends where the end should follow"
-for key, value, reason in (("end", True, "the end is that of"), ("frames", 2, "it ends with frames"), ("proven", 1, "it ends with proven"), ("infinite", 1, "it ends with infinite"),
-                           ("infinite", False, "it ends with infinite"), ("violated", 1, "bounds violated"), ("violated", -1, "violated is -1"), ("sha256", {"transforms": "0" * 64}, "SHA-256 of the transforms")):
+for key, value, reason in (
+    ("end", True, "the end is that of"),
+    ("frames", 2, "it ends with frames"),
+    ("proven", 1, "it ends with proven"),
+    ("infinite", 1, "it ends with infinite"),
+    ("infinite", False, "it ends with infinite"),
+    ("violated", 1, "bounds violated"),
+    ("violated", -1, "violated is -1"),
+    ("sha256", {"transforms": "0" * 64}, "SHA-256 of the transforms"),
+):
     field("end", [key], value, reason)
 
 
@@ -397,12 +448,15 @@ MUTATIONS["zero bytes"] = (lambda records: b"\0" * 100), "not JSON"
 MUTATIONS["an empty file"] = (lambda records: b""), "the file ends where a header should follow"
 MUTATIONS["the header alone"] = (lambda records: text_of(records[:1])), "the file ends where vertex 0 should follow"
 MUTATIONS["cut in the middle"] = (lambda records: text_of(records)[:len(text_of(records)) // 2]), ""
-MUTATIONS["gzip, cut in the middle"] = (lambda records: gzip.compress(text_of(records))[:-500]), "not readable"
-MUTATIONS["gzip, cut before its last bytes"] = (lambda records: gzip.compress(text_of(records))[:-3]), "not readable"
-MUTATIONS["gzip, with a wrong sum"] = (lambda records: gzip.compress(text_of(records))[:-8] + b"\1\2\3\4" + gzip.compress(text_of(records))[-4:]), "not readable"
-MUTATIONS["gzip, and more behind"] = (lambda records: gzip.compress(text_of(records)) + b"more"), "not readable"
-MUTATIONS["gzip, no more than its first bytes"] = (lambda records: b"\x1f\x8b"), "not readable"
-MUTATIONS["gzip, a damaged block"] = (lambda records: gzip.compress(text_of(records))[:40] + b"\xff" * 40 + gzip.compress(text_of(records))[80:]), ""
+for name, damage, reason in (
+    ("cut in the middle", lambda data: data[:-500], "not readable"),
+    ("cut before its last bytes", lambda data: data[:-3], "not readable"),
+    ("with a wrong sum", lambda data: data[:-8] + b"\1\2\3\4" + data[-4:], "not readable"),
+    ("and more behind", lambda data: data + b"more", "not readable"),
+    ("no more than its first bytes", lambda data: data[:2], "not readable"),
+    ("a damaged block", lambda data: data[:40] + b"\xff" * 40 + data[80:], ""),
+):
+    MUTATIONS[f"gzip, {name}"] = (lambda records, damage=damage: damage(gzip.compress(text_of(records)))), reason
 
 
 # ---- what changes nothing ----------------------------------------------------------------------------------------------------
@@ -448,14 +502,20 @@ def respelt(spell):
 HARMLESS["doubles with all their digits"] = respelt(lambda x: float.fromhex(x).hex())
 HARMLESS["doubles in capitals"] = respelt(str.upper)
 HARMLESS["doubles with more zeros"] = respelt(lambda x: x.replace("0x", "0x000").replace("p", "0000p" if "." in x else ".0000p"))
-HARMLESS["doubles as whole numbers"] = respelt(lambda x: "{}0x{:x}p{}".format("-" if float.fromhex(x) < 0 or x[0] == "-" else "", abs(float.fromhex(x).as_integer_ratio()[0]),
-                                                                            1 - float.fromhex(x).as_integer_ratio()[1].bit_length()))
+@respelt
+def as_a_whole_number(x):
+    p, q = float.fromhex(x).as_integer_ratio()
+    return f"{'-' if x[0] == '-' else ''}0x{abs(p):x}p{1 - q.bit_length()}"
+
+
+HARMLESS["doubles as whole numbers"] = as_a_whole_number
 
 
 @harmless
 def lambdas_as_ratios(records):
     for i in of(records, "lambda"):
-        records[i]["lambda"] = [x if "/" in x else "{}/{}".format(*(7 * n for n in float.fromhex(x).as_integer_ratio())) for x in records[i]["lambda"]]
+        records[i]["lambda"] = [x if "/" in x else "{}/{}".format(*(7 * n for n in float.fromhex(x).as_integer_ratio()))
+                                for x in records[i]["lambda"]]
     return records
 
 

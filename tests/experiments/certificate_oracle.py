@@ -31,7 +31,8 @@ class Oracle:
         return sign * (sum(a * b for a, b in zip(row, x)) + row[3])
 
     def support(self, frame, bv, d):
-        return max(sum(w * self.image(frame, j, self.rest[v], d) for j, w in self.weights[v].items()) for v in self.vertices(bv))
+        return max(sum(w * self.image(frame, j, self.rest[v], d) for j, w in self.weights[v].items())
+                   for v in self.vertices(bv))
 
     def dual(self, frame, bv, d, lam):
         vertices = self.vertices(bv)
@@ -40,7 +41,8 @@ class Oracle:
             l, h = (f(self.weights[v].get(j, Fraction(0)) for v in vertices) for f in (min, max))
             corners = [[]]
             for s in range(3):
-                corners = [c + [x] for c in corners for x in (min(self.rest[v][s] for v in vertices), max(self.rest[v][s] for v in vertices))]
+                ends = [f(self.rest[v][s] for v in vertices) for f in (min, max)]
+                corners = [c + [x] for c in corners for x in ends]
             b = max(self.image(frame, j, c, d) for c in corners)
             total += (h if b > lam else l) * (b - lam)
         return total

@@ -26,12 +26,14 @@ from certificate_oracle import Oracle, double_or_ratio  # noqa: E402
 
 ROWS = 6
 ACCEPTED, REJECTED = 0, 1
+CAPTURED = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
 
 
 def grid():
     """A bumpy sheet as an OBJ, with quads."""
     rng = random.Random(5)
-    text = "".join(f"v {c + rng.uniform(-.2, .2):.6f} {r + rng.uniform(-.2, .2):.6f} {rng.uniform(-1, 1):.6f}\n" for r in range(ROWS) for c in range(ROWS))
+    text = "".join(f"v {c + rng.uniform(-.2, .2):.6f} {r + rng.uniform(-.2, .2):.6f} {rng.uniform(-1, 1):.6f}\n"
+                   for r in range(ROWS) for c in range(ROWS))
     for r in range(ROWS - 1):
         for c in range(ROWS - 1):
             a = r * ROWS + c + 1
@@ -47,8 +49,14 @@ def skin():
         weights += "2 2 0 1 0\n" if k == 7 else f"3 0 {rng.random():.9f} 2 {rng.random():.9f} 1 {rng.random():.9f}\n"
     frames = "2\n"
     for name in ("still", "wild"):
-        frames += f"{name} 4 3\n" + "".join(f"{t / 10} " + " ".join(f"{rng.uniform(-1, 1):.9f}" for _ in range(36)) + "\n" for t in range(4))
+        frames += f"{name} 4 3\n"
+        for t in range(4):
+            frames += f"{t / 10} " + " ".join(f"{rng.uniform(-1, 1):.9f}" for _ in range(36)) + "\n"
     return weights, frames
+
+
+def file_for(name):
+    return "changed.jsonl.gz" if "gzip" in name else "changed.jsonl"
 
 
 def run(*arguments):
@@ -64,7 +72,8 @@ class CertificateTest(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
         cls.mesh = written(cls.folder.name, grid().encode(), "grid.obj")
-        cls.weights, cls.clips = (written(cls.folder.name, text.encode(), name) for text, name in zip(skin(), ("grid.weights.txt", "grid.frames.txt")))
+        cls.weights, cls.clips = (written(cls.folder.name, text.encode(), name)
+                                  for text, name in zip(skin(), ("grid.weights.txt", "grid.frames.txt")))
         cls.skinned = "--weights", cls.weights, "--transforms", cls.clips
         cls.limited = cls.certificate(cls.mesh, "--nodes", "6", "--frames", "3", "--leaf", "4", "--method", "limited")
         cls.best = cls.certificate(cls.mesh, "--nodes", "6", "--frames", "2", "--leaf", "4", "--kdop", "14")
@@ -76,7 +85,7 @@ class CertificateTest(unittest.TestCase):
     @classmethod
     def written_by_cinch(cls, *arguments, name="c.jsonl", status=0):
         path = os.path.join(cls.folder.name, name)
-        done = subprocess.run([CINCH, "verify", *arguments, "--certificate", path], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        done = subprocess.run([CINCH, "verify", *arguments, "--certificate", path], **CAPTURED)
         assert done.returncode == status, done.stdout
         return path
 
@@ -109,20 +118,20 @@ class CertificateTest(unittest.TestCase):
             with self.subTest(name):
                 if isinstance(changed, list) and isinstance(changed[0], dict):
                     self.assertTrue(json.dumps(changed) != json.dumps(self.best if "of best" in name else self.limited))
-                self.assert_rejected(self.check(changed, name="changed.jsonl.gz" if "gzip" in name else "changed.jsonl"), reason, name)
+                self.assert_rejected(self.check(changed, name=file_for(name)), reason, name)
 
     def test_changes_of_nothing_are_accepted(self):
         for name, change in HARMLESS.items():
             for records in (self.limited, self.best):
                 with self.subTest(name):
-                    self.assert_accepted(self.check(change(copy.deepcopy(records)), name="changed.jsonl.gz" if "gzip" in name else "changed.jsonl"), name)
+                    self.assert_accepted(self.check(change(copy.deepcopy(records)), name=file_for(name)), name)
 
     def test_files_that_are_none_are_rejected_in_one_line(self):
         path = os.path.join(self.folder.name, "none.jsonl")
         self.assert_rejected(run(path), "not readable", "missing")
         self.assert_rejected(run(self.folder.name), "not readable", "a folder")
         self.assert_rejected(run(self.mesh), "not JSON", "a mesh")
-        done = subprocess.run([sys.executable, CHECKER, path + "\nx"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        done = subprocess.run([sys.executable, CHECKER, path + "\nx"], **CAPTURED)
         self.assertEqual((done.returncode, done.stdout.count("\n")), (REJECTED, 1), done.stdout)
 
     def test_every_byte_damaged_is_rejected_or_changes_nothing(self):
@@ -132,7 +141,8 @@ class CertificateTest(unittest.TestCase):
             whole = gzip.compress(data, 1) if packed else data
             for _ in range(150):
                 i = rng.randrange(len(whole))
-                damaged = rng.choice((whole[:i], whole[:i] + bytes([whole[i] ^ 1 << rng.randrange(8)]) + whole[i + 1:], whole[:i] + whole[i + rng.randrange(1, 300):]))
+                damaged = rng.choice((whole[:i], whole[:i] + bytes([whole[i] ^ 1 << rng.randrange(8)]) + whole[i + 1:],
+                                      whole[:i] + whole[i + rng.randrange(1, 300):]))
                 status, lines = self.check(damaged)
                 self.assertEqual(len(lines), 1, lines)
                 self.assertNotIn("not understood", lines[0])
@@ -146,11 +156,12 @@ class CertificateTest(unittest.TestCase):
                                 self.assertGreaterEqual(Fraction(float.fromhex(bound)), support)
 
     def test_every_method_and_its_argument(self):
-        for i, (arguments, duality) in enumerate((("--method eq12 --kdop 14", True), ("--method convex --kdop 18", True), ("--method corners", True),
-                                                  ("--method limited+eq12", True), ("--method limited --rest obb", False), ("--method vertices --kdop 26", False),
-                                                  ("--method support+limited", False), ("--method sphere", False), ("--method local", False), ("--method linear", False))):
+        duality = ("--method eq12 --kdop 14", "--method convex --kdop 18", "--method corners", "--method limited+eq12")
+        vertices = ("--method limited --rest obb", "--method vertices --kdop 26", "--method support+limited", "--method sphere",
+                    "--method local", "--method linear")
+        for i, arguments in enumerate(duality + vertices):
             records = self.certificate(self.mesh, "--nodes", "5", "--frames", "2", *arguments.split(), name=f"{i}.jsonl")
-            self.assertEqual("lambda" in records[-2], duality, arguments)
+            self.assertEqual("lambda" in records[-2], arguments in duality, arguments)
             self.assert_accepted(self.check(records), arguments)
             bound = records[-2]["bounds"]
             bound[0] = (float.fromhex(bound[0]) - 1e3).hex()  # below a vertex
@@ -249,14 +260,22 @@ class CertificateTest(unittest.TestCase):
         lines = grid().splitlines()
         faces = [line.split()[1:] for line in lines if line[0] == "f"]
         points = [line[2:] for line in lines if line[0] == "v"]
-        off = f"OFF\n{len(points)} {len(faces)} 0\n" + "\n".join(points) + "\n" + "".join(f"4 {' '.join(str(int(v) - 1) for v in f)}\n" for f in faces)
+        off = f"OFF\n{len(points)} {len(faces)} 0\n" + "\n".join(points) + "\n"
+        off += "".join(f"4 {' '.join(str(int(v) - 1) for v in f)}\n" for f in faces)
         self.assert_accepted(self.check(self.best, "--input", written(self.folder.name, off.encode(), "grid.OFF")), "OFF")
-        relative = [" ".join(["f", *(f"{int(v) - 1 - ROWS * ROWS}/1/-1" for v in line.split()[1:])]) if line[0] == "f" else line for line in lines]
-        for name, text, wanted in (("relative indices", "\r".join(relative), True), ("continued lines", "\n".join(lines).replace(" 8 ", " \\\n8 "), True),
-                                   ("comments, lines and points", "# x\n" + "\r\n".join(lines) + "\nl 1 2\np 1\nf 1 2 # 3\ng a", True),
-                                   ("a vertex moved", "\n".join(lines).replace("5.", "6.", 1), False), ("a face turned", "\n".join(lines).replace("f 1 2 8 7", "f 1 7 8 2"), False),
-                                   ("a face less", "\n".join(lines[:-1]), False), ("a face more", "\n".join(lines + lines[-1:]), False),
-                                   ("a vertex more", "v 0 0 0\n" + "\n".join(lines), False)):
+        relative = [" ".join(["f", *(f"{int(v) - 1 - ROWS * ROWS}/1/-1" for v in line.split()[1:])])
+                    if line[0] == "f" else line for line in lines]
+        whole = "\n".join(lines)
+        for name, text, wanted in (
+            ("relative indices", "\r".join(relative), True),
+            ("continued lines", whole.replace(" 8 ", " \\\n8 "), True),
+            ("comments, lines and points", "# x\n" + "\r\n".join(lines) + "\nl 1 2\np 1\nf 1 2 # 3\ng a", True),
+            ("a vertex moved", whole.replace("5.", "6.", 1), False),
+            ("a face turned", whole.replace("f 1 2 8 7", "f 1 7 8 2"), False),
+            ("a face less", "\n".join(lines[:-1]), False),
+            ("a face more", "\n".join(lines + lines[-1:]), False),
+            ("a vertex more", "v 0 0 0\n" + whole, False),
+        ):
             with self.subTest(name):
                 verdict = self.check(self.best, "--input", written(self.folder.name, text.encode(), "other.obj"))
                 self.assert_accepted(verdict, name) if wanted else self.assert_rejected(verdict, "are not those of", name)
@@ -283,16 +302,21 @@ class CertificateTest(unittest.TestCase):
         lines = weights.splitlines()
         lines[3] = lines[3].replace(lines[3].split()[2], f"{float(lines[3].split()[2]) + 1e-9:.9f}")
         path = written(self.folder.name, "\n".join(lines).encode(), "other.weights.txt")
-        self.assert_rejected(self.check(records, "--input", self.mesh, "--weights", path, "--transforms", self.clips), "weights of vertex 2", "a weight moved")
-        self.assert_rejected(self.check(self.best, "--input", self.mesh, *self.skinned), "positions are not those", "scripted, but a skin is given")
+        verdict = self.check(records, "--input", self.mesh, "--weights", path, "--transforms", self.clips)
+        self.assert_rejected(verdict, "weights of vertex 2", "a weight moved")
+        verdict = self.check(self.best, "--input", self.mesh, *self.skinned)
+        self.assert_rejected(verdict, "positions are not those", "scripted, but a skin is given")
 
     def test_files_that_cannot_be_tied_are_errors_of_usage(self):
-        for name, data in (("x.obj", b"v 1 2\nf 1 1 1\n"), ("x.obj", b"v 0 0 0\nf 1 1 2\n"), ("x.off", b"OFF\n3 1 0\n0 0 0\n"), ("x.off", b""), ("x.obj", b"\xff\x00"),
-                           ("x.off", b"OFF\n1 1 0\n0 0 0\n3 0 0 1\n"), ("x.ply", b"ply\n"), ("x.obj", b"v nan 0 0\nf 1 1 1\n"), ("x.obj", b"v 1e999 0 0\nf 1 1 1\n")):
+        for name, data in (
+            ("x.obj", b"v 1 2\nf 1 1 1\n"), ("x.obj", b"v 0 0 0\nf 1 1 2\n"), ("x.obj", b"\xff\x00"),
+            ("x.obj", b"v nan 0 0\nf 1 1 1\n"), ("x.obj", b"v 1e999 0 0\nf 1 1 1\n"), ("x.ply", b"ply\n"), ("x.off", b""),
+            ("x.off", b"OFF\n3 1 0\n0 0 0\n"), ("x.off", b"OFF\n1 1 0\n0 0 0\n3 0 0 1\n"),
+        ):
             status, lines = self.check(self.best, "--input", written(self.folder.name, data, name))
             self.assertEqual((status, len(lines)), (2, 1), f"{data}: {lines}")
         for options in (("--weights", self.weights), ("--input", self.mesh, "--weights", self.weights), ("--nothing",)):
-            done = subprocess.run([sys.executable, CHECKER, self.mesh, *options], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+            done = subprocess.run([sys.executable, CHECKER, self.mesh, *options], **CAPTURED)
             self.assertEqual(done.returncode, 2)
             self.assertNotIn("Traceback", done.stdout)
 
