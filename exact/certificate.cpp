@@ -3,14 +3,26 @@
 
 #include <charconv>
 #include <cmath>
+#include <stdexcept>
+
+#include <nlohmann/json.hpp>
+
+#include "exact/sha256.hpp"
 
 namespace cinch::exact {
 namespace {
 
+constexpr std::string_view format = "cinch 2";
+
+std::string escaped(const std::string& text)
+{
+    return nlohmann::json(text).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+}
+
 /// Builds one line of JSON in a buffer that is reused.
 class Line {
 public:
-    explicit Line(const LineSink& sink) : sink_(sink) {}
+    explicit Line(LineSink sink) : sink_(std::move(sink)) {}
 
     Line& raw(std::string_view text)
     {
@@ -18,6 +30,7 @@ public:
         return *this;
     }
     Line& integer(std::size_t value) { return raw(std::to_string(value)); }
+    Line& text(const std::string& value) { return raw(escaped(value)); }
     Line& number(double value) // "0x1.8p+0"; std::to_chars leaves out 0x
     {
         text_ += '"';
@@ -60,50 +73,123 @@ public:
     }
 
 private:
-    const LineSink& sink_;
+    LineSink sink_;
     std::string text_;
 };
 
+std::string hash_of_positions(const DeformableSurface& surface)
+{
+    Sha256 hash;
+    for (const Vec3& v : surface.mesh.vertices)
+        hash.add(std::span<const double>(v.data(), 3));
+    return hash.hex();
+}
+
+std::string hash_of_triangles(const DeformableSurface& surface)
+{
+    Sha256 hash;
+    for (const Triangle& t : surface.mesh.triangles)
+        hash.add(std::span<const std::uint32_t>(t));
+    return hash.hex();
+}
+
+std::string hash_of_weights(const DeformableSurface& surface)
+{
+    Sha256 hash;
+    for (std::size_t k = 0; k < surface.mesh.vertices.size(); ++k) {
+        const Weights::Row row = surface.weights.of(k);
+        hash.add(static_cast<std::uint32_t>(row.node.size()));
+        hash.add(row.node);
+        hash.add(row.weight);
+    }
+    return hash.hex();
+}
+
+std::string hash_of_method(const Claim& claim, std::string_view shape)
+{
+    auto as_shown = [](const std::string& text) { // valid UTF-8
+        return nlohmann::json::parse(escaped(text)).get<std::string>();
+    };
+    Sha256 hash;
+    hash.add_text(format);
+    hash.add_text(name_of(claim.methods));
+    hash.add_text(shape);
+    hash.add_text(std::to_string(claim.kdop));
+    hash.add_text(as_shown(claim.clip));
+    for (const std::string& part : claim.missing)
+        hash.add_text(as_shown(part));
+    return hash.hex();
+}
+
 } // namespace
 
-void certify_rest(const DeformableSurface& surface, const Bvh& bvh, Methods methods, int kdop, std::size_t frames, const LineSink& sink, RestShape shape)
+struct CertificateWriter::Parts {
+    Line line;
+    std::size_t bvs, kdop;
+    std::size_t frames_claimed, frames = 0;
+    bool has_lambda;
+    std::size_t proven = 0, infinite = 0, violated = 0;
+    Sha256 transforms;
+};
+
+CertificateWriter::CertificateWriter(const DeformableSurface& surface, const Bvh& bvh, const Claim& claim,
+                                     LineSink sink)
+    : parts_(new Parts{Line(std::move(sink)), bvh.bvs.size(), static_cast<std::size_t>(claim.kdop), claim.frames, 0,
+                       claim.methods.within(box_methods) && claim.shape == RestShape::aabb, 0, 0, 0, {}})
 {
-    Line line(sink);
-    line.raw(R"({"certificate":"cinch 1","vertices":)").integer(surface.mesh.vertices.size());
-    line.raw(",\"triangles\":").integer(surface.mesh.triangles.size()).raw(",\"nodes\":").integer(surface.weights.node_count);
-    line.raw(",\"bvs\":").integer(bvh.bvs.size()).raw(",\"frames\":").integer(frames).raw(",\"method\":\"").raw(name_of(methods));
-    line.raw(methods.within(box_methods) && shape == RestShape::aabb ? "\",\"weight_space\":true" : "\",\"weight_space\":false").raw(",\"kdop\":").integer(static_cast<std::size_t>(kdop)).raw("}").end();
+    Line& line = parts_->line;
+    const std::string_view shape = claim.shape == RestShape::aabb ? "aabb" : "obb";
+    line.raw("{\"certificate\":\"").raw(format).raw("\",\"method\":\"").raw(name_of(claim.methods));
+    line.raw("\",\"rest_shape\":\"").raw(shape).raw("\",\"kdop\":").integer(parts_->kdop);
+    line.raw(",\"vertices\":").integer(surface.mesh.vertices.size());
+    line.raw(",\"triangles\":").integer(surface.mesh.triangles.size());
+    line.raw(",\"nodes\":").integer(surface.weights.node_count).raw(",\"bvs\":").integer(bvh.bvs.size());
+    line.raw(",\"frames\":").integer(claim.frames).raw(",\"clip\":").text(claim.clip);
+    line.raw(claim.missing.empty() ? ",\"partial\":false" : ",\"partial\":true").raw(",\"missing\":");
+    line.array(claim.missing, [&](const std::string& part) { line.text(part); });
+    line.raw(",\"sha256\":{\"positions\":\"").raw(hash_of_positions(surface));
+    line.raw("\",\"triangles\":\"").raw(hash_of_triangles(surface));
+    line.raw("\",\"weights\":\"").raw(hash_of_weights(surface));
+    line.raw("\",\"method\":\"").raw(hash_of_method(claim, shape)).raw("\"}}").end();
     for (std::size_t k = 0; k < surface.mesh.vertices.size(); ++k) {
         const Weights::Row row = surface.weights.of(k);
         line.raw("{\"vertex\":").integer(k).raw(",\"rest\":").numbers({surface.mesh.vertices[k].data(), 3});
         line.raw(",\"nodes\":").integers(row.node).raw(",\"weights\":").numbers(row.weight).raw("}").end();
     }
+    for (std::size_t t = 0; t < surface.mesh.triangles.size(); ++t)
+        line.raw("{\"triangle\":").integer(t).raw(",\"vertices\":").integers(surface.mesh.triangles[t]).raw("}").end();
     for (std::size_t i = 0; i < bvh.bvs.size(); ++i) {
         const Bv& bv = bvh.bvs[i];
-        const RestBv rest = bvh.rest(i);
         line.raw("{\"bv\":").integer(i);
         if (bv.is_leaf())
-            line.raw(",\"triangles\":").array(std::span(bvh.triangle).subspan(bv.first_triangle, bv.triangle_count),
-                                              [&](std::uint32_t t) { line.integers(surface.mesh.triangles[t]); });
+            line.raw(",\"triangles\":").integers(std::span(bvh.triangle).subspan(bv.first_triangle, bv.triangle_count));
         else
             line.raw(",\"children\":[").integer(bv.first_child).raw(",").integer(bv.first_child + 1).raw("]");
-        line.raw(",\"centre\":").numbers({bv.box.centre.data(), 3}).raw(",\"half\":").numbers({bv.box.half.data(), 3});
-        line.raw(",\"nodes\":").integers(rest.node).raw(",\"l\":").numbers(rest.space.l).raw(",\"h\":").numbers(rest.space.h).raw("}").end();
+        line.raw("}").end();
     }
 }
 
-void certify_frame(std::size_t frame, std::span<const AffineMap> maps, Methods methods, int kdop, std::span<const double> supports,
-                   const FrameVerdict& verdict, const LineSink& sink, RestShape shape)
+CertificateWriter::~CertificateWriter() = default;
+
+void CertificateWriter::frame(double time_s, std::span<const AffineMap> maps, std::span<const double> supports,
+                              const FrameVerdict& verdict)
 {
-    Line line(sink);
-    line.raw("{\"frame\":").integer(frame).raw(",\"maps\":").array(maps, [&](const AffineMap& map) { line.numbers({&map.m[0][0], 12}); }).raw("}").end();
-    const auto k = static_cast<std::size_t>(kdop);
-    for (std::size_t i = 0; i < supports.size() / k; ++i) {
-        line.raw("{\"frame\":").integer(frame).raw(",\"bv\":").integer(i).raw(",\"bounds\":").numbers(supports.subspan(i * k, k));
-        if (methods.within(box_methods) && shape == RestShape::aabb) {
+    Parts& p = *parts_;
+    if (p.frames == p.frames_claimed || supports.size() != p.bvs * p.kdop || verdict.failed.size() != supports.size())
+        throw std::invalid_argument("CertificateWriter::frame: not a frame of what is claimed");
+    p.transforms.add(time_s);
+    for (const AffineMap& map : maps)
+        p.transforms.add(std::span<const double>(&map.m[0][0], 12));
+    Line& line = p.line;
+    line.raw("{\"frame\":").integer(p.frames).raw(",\"time\":").number(time_s).raw(",\"maps\":");
+    line.array(maps, [&](const AffineMap& map) { line.numbers({&map.m[0][0], 12}); }).raw("}").end();
+    for (std::size_t i = 0; i < p.bvs; ++i) {
+        line.raw("{\"frame\":").integer(p.frames).raw(",\"bv\":").integer(i);
+        line.raw(",\"bounds\":").numbers(supports.subspan(i * p.kdop, p.kdop));
+        if (p.has_lambda) {
             line.raw(",\"lambda\":[");
-            for (std::size_t slot = i * k; slot < (i + 1) * k; ++slot) {
-                if (slot > i * k)
+            for (std::size_t slot = i * p.kdop; slot < (i + 1) * p.kdop; ++slot) {
+                if (slot > i * p.kdop)
                     line.raw(",");
                 const auto fraction = verdict.exact_lambda.find(slot);
                 if (fraction == verdict.exact_lambda.end())
@@ -115,6 +201,19 @@ void certify_frame(std::size_t frame, std::span<const AffineMap> maps, Methods m
         }
         line.raw("}").end();
     }
+    for (std::size_t slot = 0; slot < supports.size(); ++slot)
+        ++(verdict.failed[slot] ? p.violated : std::isinf(supports[slot]) ? p.infinite : p.proven);
+    ++p.frames;
+}
+
+void CertificateWriter::end()
+{
+    Parts& p = *parts_;
+    if (p.frames != p.frames_claimed)
+        throw std::logic_error("CertificateWriter::end: frames are missing");
+    p.line.raw("{\"end\":\"").raw(format).raw("\",\"frames\":").integer(p.frames).raw(",\"proven\":").integer(p.proven);
+    p.line.raw(",\"infinite\":").integer(p.infinite).raw(",\"violated\":").integer(p.violated);
+    p.line.raw(",\"sha256\":{\"transforms\":\"").raw(p.transforms.hex()).raw("\"}}").end();
 }
 
 } // namespace cinch::exact

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "exact/verifier.hpp"
 
@@ -13,15 +15,49 @@ namespace cinch::exact {
 /// Takes one line, without its end. Called in order.
 using LineSink = std::function<void(std::string_view)>;
 
-/// A certificate is JSON Lines that carry everything needed to prove the bounds again without this program; doubles are
-/// hexadecimal floats. First {"certificate":"cinch 1", counts, method, weight_space (are there λ?), kdop}; per vertex {"vertex", "rest", "nodes",
-/// "weights"}; per BV {"bv", "triangles": vertex triples, for leaves, or "children", "centre", "half", "nodes", "l", "h"}.
-void certify_rest(const DeformableSurface& surface, const Bvh& bvh, Methods methods, int kdop, std::size_t frames, const LineSink& line,
-                  RestShape shape = RestShape::aabb);
+/// What a certificate says about one surface's BVH, beside the surface.
+struct Claim {
+    Methods methods = Method::best;
+    int kdop = 6;
+    RestShape shape = RestShape::aabb;
+    std::string clip;                 ///< name of the motion
+    std::size_t frames = 0;           ///< how many will follow
+    std::vector<std::string> missing; ///< parts of the input that the surface lacks; any make the certificate partial
+};
 
-/// Per frame {"frame", "maps": 12 numbers per simulation node}; then per BV {"frame", "bv", "bounds", "lambda"}, k of each, in the
-/// order of the k-DOP's directions. D(λ) ≤ bound proves a direction; λ is "p/q" where no double will do, only for the box_methods, other bounds are proven by the vertices alone.
-void certify_frame(std::size_t frame, std::span<const AffineMap> maps, Methods methods, int kdop, std::span<const double> supports,
-                   const FrameVerdict& verdict, const LineSink& line, RestShape shape = RestShape::aabb);
+/// Writes a certificate: JSON Lines that carry everything needed to prove the bounds again without this program. Doubles
+/// are texts of hexadecimal floats; hashes are SHA-256 over little-endian numbers, of 4 bytes (indices, counts) and 8
+/// (doubles). In this order:
+///
+///   {"certificate":"cinch 2", "method", "rest_shape", "kdop", "vertices", "triangles", "nodes", "bvs", "frames",
+///    "clip", "partial", "missing", "sha256": {"positions", "triangles", "weights", "method"}}
+///   per vertex        {"vertex", "rest", "nodes", "weights"}
+///   per triangle      {"triangle", "vertices"}
+///   per BV            {"bv", "triangles": indices of a leaf's, or "children"}
+///   per frame         {"frame", "time": seconds, "maps": 12 numbers per simulation node, row-major}
+///     and per BV      {"frame", "bv", "bounds", "lambda"}, k of each, in the order of axes_of(k)
+///   last              {"end":"cinch 2", "frames", "proven", "infinite", "violated": numbers of bounds,
+///                      "sha256": {"transforms"}}
+///
+/// The hash of weights is over each vertex's count, simulation nodes and weights, that of transforms over each frame's
+/// time and maps, that of the method over format, method, rest shape, k, clip and missing, each as its length, a colon
+/// and its bytes. "lambda" is there for the box_methods over axis-aligned rest boxes: D(λ) ≤ bound; where no double λ does
+/// it, λ is "p/q". Rest boxes and weight intervals are not in it: whoever checks it derives them from the vertices.
+class CertificateWriter {
+public:
+    /// Writes all that does not change from frame to frame.
+    CertificateWriter(const DeformableSurface& surface, const Bvh& bvh, const Claim& claim, LineSink line);
+    ~CertificateWriter();
+
+    /// `verdict` is Verifier::check's of these supports. Throws std::invalid_argument for what is no frame of the claim.
+    void frame(double time_s, std::span<const AffineMap> maps, std::span<const double> supports,
+               const FrameVerdict& verdict);
+    /// After the last of the frames claimed; a certificate without an end proves nothing.
+    void end();
+
+private:
+    struct Parts;
+    std::unique_ptr<Parts> parts_;
+};
 
 } // namespace cinch::exact

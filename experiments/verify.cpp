@@ -127,9 +127,16 @@ void verify_body(const Input& input, const VerifyOptions& options, LineFile* cer
     add_levels(bvh, totals);
     if (options.volume && totals.volumes.size() < totals.levels.size())
         totals.volumes.resize(totals.levels.size());
-    const exact::LineSink write = [&](std::string_view text) { certificate->line(text); };
+    std::optional<exact::CertificateWriter> proof;
     if (certificate)
-        exact::certify_rest(input.surface, bvh, options.methods, options.kdop, input.clip.frames.size(), write, options.rest_shape);
+        proof.emplace(input.surface, bvh,
+                      exact::Claim{.methods = options.methods,
+                                   .kdop = options.kdop,
+                                   .shape = options.rest_shape,
+                                   .clip = input.clip.name,
+                                   .frames = input.clip.frames.size(),
+                                   .missing = {}},
+                      [=](std::string_view text) { certificate->line(text); });
 
     const std::size_t before = totals.frames;
     Progress progress("verifying frames", totals.frames_wanted);
@@ -139,8 +146,8 @@ void verify_body(const Input& input, const VerifyOptions& options, LineFile* cer
             break;
         totals.unbounded_nodes += refit(maps, supports).unbounded_nodes;
         const exact::FrameVerdict verdict = verifier.check(maps, options.methods, options.kdop, supports, options.rest_shape);
-        if (certificate)
-            exact::certify_frame(totals.frames, maps, options.methods, options.kdop, supports, verdict, write, options.rest_shape);
+        if (proof)
+            proof->frame(input.clip.time_s[totals.frames - before], maps, supports, verdict);
         add(bvh, verdict, options.kdop, {}, totals);
         totals.infinite += static_cast<std::size_t>(std::count_if(supports.begin(), supports.end(), [](double s) { return std::isinf(s); }));
         if (options.volume)
@@ -148,6 +155,8 @@ void verify_body(const Input& input, const VerifyOptions& options, LineFile* cer
         ladder.check(maps, supports, totals.ladder);
         progress.done(totals.frames);
     }
+    if (proof && totals.frames - before == input.clip.frames.size())
+        proof->end();
     if (totals.frames > before)
         explain_last_frame(input, bvh, options, totals.frames - before - 1, supports, totals);
 }

@@ -1,0 +1,198 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The proof itself: bounds against vertices, and against the dual function."""
+import hashlib
+import math
+import struct
+import sys
+
+from certificate.records import FORMAT, HEADER, Header, hashes
+from certificate.surface import RestBounds, Surface
+from certificate.values import (WEIGHT_BITS, Rejected, bits_after_point, double, double_or_ratio, in_order, least_doubles,
+                                listed, plain, require, scaled, shown, whole)
+
+
+class FrameProof:
+    """Everything about one frame that the bounds of its BVs are held against."""
+
+    def __init__(self, checker, maps):
+        self.checker, self.maps = checker, maps
+        map_bits = max(bits_after_point(x) for m in maps for x in m)
+        self.bits = map_bits + checker.rest_bits  # of positions
+        self.units = [[scaled(x, map_bits) for x in m] for m in maps]
+        for m in self.units:
+            for r in (3, 7, 11):
+                m[r] <<= checker.rest_bits
+        if checker.rest_bounds:  # per axis and simulation node: A^T axis, 2 axis . t
+            def column(axis, m, s):
+                return sum(a * m[4 * r + s] for r, a in enumerate(axis) if a)
+            self.columns = [[(*(column(axis, m, s) for s in range(3)), 2 * column(axis, m, 3)) for m in self.units]
+                            for axis in checker.header.axes]
+        surface = checker.surface
+        of_vertex = [list(map(max, self.exact(v), self.computed(v))) if used else None
+                     for v, used in enumerate(checker.used)]
+        self.supports = surface.merged(lambda vs: [max(all_of) for all_of in zip(*(of_vertex[v] for v in vs))],
+                                       lambda a, b: list(map(max, a, b)))
+
+    def exact(self, v):
+        """Per direction the least double that holds vertex v in real arithmetic."""
+        x, y, z = self.checker.rest_units[v]
+        p = q = r = 0
+        for j, u, _ in self.checker.surface.rows[v]:
+            a, b, c, d, e, f, g, h, i, k, l, m = self.units[j]
+            p += u * (a * x + b * y + c * z + d)
+            q += u * (e * x + f * y + g * z + h)
+            r += u * (i * x + k * y + l * z + m)
+        return self.along((p, q, r), self.bits + WEIGHT_BITS)
+
+    def computed(self, v):
+        """Per direction the least double that holds vertex v as cinch computes it; infinite where a coordinate is."""
+        x, y, z = self.checker.surface.positions[v]
+        p = q = r = 0.0
+        for j, _, w in self.checker.surface.rows[v]:
+            a, b, c, d, e, f, g, h, i, k, l, m = self.maps[j]
+            p = p + w * (((a * x + b * y) + c * z) + d)
+            q = q + w * (((e * x + f * y) + g * z) + h)
+            r = r + w * (((i * x + k * y) + l * z) + m)
+        point = (p, q, r)
+        if all(map(math.isfinite, point)):
+            if len(self.checker.header.axes) == 3:
+                return [p, -p, q, -q, r, -r]
+            bits = max(map(bits_after_point, point))
+            return self.along([scaled(c, bits) for c in point], bits)
+        out = []
+        for axis in self.checker.header.axes:
+            involved = [a * c for a, c in zip(axis, point) if a]
+            if all(map(math.isfinite, involved)):
+                bits = max(map(bits_after_point, involved))
+                out += least_doubles(sum(scaled(c, bits) for c in involved), bits)
+            else:
+                out += math.inf, math.inf
+        return out
+
+    def along(self, point, bits):
+        out = []
+        for a, b, c in self.checker.header.axes:
+            out += least_doubles(a * point[0] + b * point[1] + c * point[2], bits)
+        return out
+
+    def check(self, i, bounds, lambdas):
+        """Proves the bounds of BV i, of which None is infinity."""
+        support = self.supports[i]
+        for d, bound in enumerate(bounds):
+            if bound is not None and not bound >= support[d]:
+                self.explain(i, d, bound)
+        if lambdas is not None and any(bound is not None for bound in bounds):
+            intervals = self.checker.rest_bounds.intervals[i]
+            for a in range(len(self.columns)):
+                b = self.extrema(i, intervals[0], self.columns[a])
+                for d in (2 * a, 2 * a + 1):
+                    if bounds[d] is not None:
+                        p, q = bounds[d].as_integer_ratio()
+                        above, below = self.dual(b[d % 2], intervals, lambdas[d])
+                        require(p * below >= above * q,
+                                "direction {}: the bound {} lies below D(lambda)", d, bounds[d].hex())
+
+    def explain(self, i, d, bound):
+        for v in self.checker.surface.vertices_of(i):
+            for kind, support in (("in real arithmetic", self.exact), ("as computed", self.computed)):
+                require(bound >= support(v)[d],
+                        "direction {}: vertex {} {} lies beyond the bound {}", d, v, kind, bound.hex())
+        raise Rejected(f"direction {d}: a vertex lies beyond the bound {bound.hex()}")
+
+    def extrema(self, i, nodes, columns):
+        """Exact extrema of the moved rest box along the axis and against it, per node, in units of 2^-(bits + 1)."""
+        low, high = self.checker.rest_bounds.low[i], self.checker.rest_bounds.high[i]
+        c0, c1, c2 = (h + l for l, h in zip(low, high))
+        e0, e1, e2 = (h - l for l, h in zip(low, high))
+        plus, minus = [], []
+        for j in nodes:
+            g0, g1, g2, t = columns[j]
+            p = g0 * c0 + g1 * c1 + g2 * c2 + t
+            r = abs(g0) * e0 + abs(g1) * e1 + abs(g2) * e2
+            plus.append(p + r)
+            minus.append(r - p)
+        return plus, minus
+
+    def dual(self, b, intervals, ratio):
+        """D(lambda) as numerator and denominator > 0."""
+        p, q = ratio
+        bits = self.bits + 1
+        shift = q.bit_length() - 1
+        if q == 1 << shift and shift <= bits:  # lambda is a whole number of units too
+            p, q = p << (bits - shift), 1
+        else:
+            p <<= bits
+            b = [x * q for x in b]
+        total = p << WEIGHT_BITS
+        for x, l, h in zip(b, intervals[1], intervals[2]):
+            x -= p
+            total += (h if x > 0 else l) * x
+        return total, q << (bits + WEIGHT_BITS)
+
+
+class Checker:
+    """Reads and proves a whole certificate. `tie` compares with files of --input; see files.py."""
+
+    def __init__(self, records, tie=None, progress=lambda text: None):
+        require(1e16 + 2.9999 == 10000000000000002.0 and sys.float_info.mant_dig == 53,
+                "this machine's floats are no IEEE doubles")
+        self.records, self.tie = records, tie
+        self.header = header = Header(records.expect("a header", HEADER))
+        progress("surface")
+        self.surface = surface = Surface(header, records)
+        if tie:
+            tie.surface(surface)
+        self.used = bytearray(header.vertices)
+        for triangle in surface.triangles:
+            for v in triangle:
+                self.used[v] = 1
+        self.rest_bits = max(bits_after_point(x) for position in surface.positions for x in position)
+        self.rest_units = [[scaled(x, self.rest_bits) for x in position] for position in surface.positions]
+        self.rest_bounds = RestBounds(surface, self.rest_units) if header.duality else None
+        self.proven = self.infinite = 0
+        transforms = hashlib.sha256()
+        for f in range(header.frames):
+            progress(f"frame {f + 1} of {header.frames}")
+            self.check_frame(f, transforms)
+        self.check_end(transforms)
+
+    def check_frame(self, f, transforms):
+        record = self.records.expect(f"frame {f}", {"frame", "time", "maps"})
+        in_order("frame", record["frame"], f)
+        time = double(record["time"])
+        maps = listed(record["maps"], self.header.nodes, "maps")
+        maps = [[double(x) for x in listed(m, 12, "a transform")] for m in maps]
+        transforms.update(struct.pack("<d", time))
+        for m in maps:
+            transforms.update(struct.pack("<12d", *m))
+        if self.tie:
+            self.tie.frame(self.header.clip, time, maps)
+        proof = FrameProof(self, maps)
+        k, duality = self.header.directions, self.header.duality
+        keys = {"frame", "bv", "bounds", "lambda"} if duality else {"frame", "bv", "bounds"}
+        for i in range(self.header.bvs):
+            record = self.records.expect(f"BV {i} of frame {f}", keys)
+            in_order("frame", record["frame"], f)
+            in_order("BV", record["bv"], i)
+            bounds = [None if x == "inf" else double(x) for x in listed(record["bounds"], k, "bounds")]
+            infinite = bounds.count(None)
+            self.infinite += infinite
+            self.proven += k - infinite
+            lambdas = [double_or_ratio(x) for x in listed(record["lambda"], k, "lambda")] if duality else None
+            proof.check(i, bounds, lambdas)
+
+    def check_end(self, transforms):
+        record = self.records.expect("the end", {"end", "frames", "proven", "infinite", "violated", "sha256"})
+        require(record["end"] == FORMAT, "the end is that of {}", shown(record["end"]))
+        violated = whole(record["violated"], 0, 1 << 62, "violated")
+        require(not violated, "the run that wrote it found {} bounds violated", violated)
+        for name, found in (("frames", self.header.frames), ("proven", self.proven), ("infinite", self.infinite)):
+            require(record[name] == found and type(record[name]) is int,
+                    "it ends with {} {}, but there are {}", name, shown(record[name]), found)
+        require(hashes(record["sha256"], {"transforms"})["transforms"] == transforms.hexdigest(),
+                "the SHA-256 of the transforms is another than stated")
+        require(self.records.next(set()) is None, "something follows the end")
+
+    def verdict(self):
+        partial = f"partial (missing: {', '.join(map(plain, self.header.missing))}): " if self.header.missing else ""
+        return f"{partial}{self.proven} bounds proven, {self.infinite} infinite"

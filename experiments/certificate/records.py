@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The lines of a certificate as records, and its header."""
+import hashlib
+import json
+import re
+
+from certificate.values import Rejected, listed, require, shown, text, whole, MOST_INDEX
+
+FORMAT = "cinch 2"
+FACES = [(1, 0, 0), (0, 1, 0), (0, 0, 1)]
+CORNERS = [(1, 1, 1), (1, 1, -1), (1, -1, 1), (1, -1, -1)]
+EDGES = [(1, 1, 0), (1, 0, 1), (0, 1, 1), (1, -1, 0), (1, 0, -1), (0, 1, -1)]
+AXES = {6: FACES, 14: FACES + CORNERS, 18: FACES + EDGES, 26: FACES + CORNERS + EDGES}
+METHODS = ("convex", "sphere", "corners", "eq12", "limited", "local", "support", "linear", "best", "vertices")
+BOX_METHODS = {"convex", "corners", "eq12", "limited"}
+LONGEST_LINE = 1 << 28  # bytes; a record holds one BV or the transforms of one frame
+HASHES = {"positions", "triangles", "weights", "method"}
+HEADER = {"certificate", "method", "rest_shape", "kdop", "vertices", "triangles", "nodes", "bvs", "frames", "clip",
+          "partial", "missing", "sha256"}
+
+
+def unique(pairs):
+    record = dict(pairs)
+    if len(record) < len(pairs):
+        names = [name for name, _ in pairs]
+        raise Rejected(f"the key {shown(next(name for name in names if names.count(name) > 1))} stands twice")
+    return record
+
+
+def no_number(value):
+    raise Rejected(f"the number {shown(value)}, where only whole numbers are written as numbers")
+
+
+DECODE = json.JSONDecoder(object_pairs_hook=unique, parse_float=no_number, parse_constant=no_number).decode
+
+
+class Records:
+    """The records of a certificate, one after the other; knows the line."""
+
+    def __init__(self, stream):
+        self.stream, self.line = stream, 0
+
+    def next(self, *keys_of):
+        """The next record, which must have one of these sets of keys; None at the end of the file."""
+        while True:
+            self.line += 1
+            data = self.stream.readline(LONGEST_LINE + 1)
+            if not data:
+                return None
+            require(len(data) <= LONGEST_LINE, "longer than {} bytes", LONGEST_LINE)
+            if not data.isspace():
+                break
+        try:
+            record = DECODE(data.decode("utf-8"))
+        except UnicodeDecodeError:
+            raise Rejected("not UTF-8") from None
+        except RecursionError:
+            raise Rejected("nested too deeply") from None
+        except ValueError as error:
+            raise Rejected(f"not JSON: {str(error)[:80]}") from None
+        require(type(record) is dict, "no JSON object")
+        keys = record.keys()
+        if not any(keys == wanted for wanted in keys_of):
+            wanted = min(keys_of, key=lambda w: len(w ^ keys))
+            for name in sorted(wanted - keys):
+                raise Rejected(f"{shown(name)} is missing")
+            for name in sorted(keys - wanted):
+                raise Rejected(f"{shown(name)} does not belong here")
+        return record
+
+    def expect(self, what, *keys_of):
+        record = self.next(*keys_of)
+        require(record is not None, "the file ends where {} should follow", what)
+        return record
+
+
+class Header:
+    def __init__(self, record):
+        require(record["certificate"] == FORMAT, "the format is {}, not \"{}\"", shown(record["certificate"]), FORMAT)
+        names = text(record["method"], "method").split("+")
+        require(set(names) <= set(METHODS) and len(set(names)) == len(names), "method is {}", shown(record["method"]))
+        shape = record["rest_shape"]
+        require(shape in ("aabb", "obb"), "rest_shape is {}", shown(shape))
+        kdop = record["kdop"]
+        require(type(kdop) is int and kdop in AXES, "kdop is {}", shown(kdop))
+        self.axes, self.directions = AXES[kdop], kdop
+        self.duality = set(names) <= BOX_METHODS and shape == "aabb"
+        self.vertices, self.triangles, self.nodes, self.bvs, self.frames = (
+            whole(record[name], 1, MOST_INDEX, name) for name in ("vertices", "triangles", "nodes", "bvs", "frames"))
+        self.clip = text(record["clip"], "clip")
+        self.missing = [text(part, "a missing part") for part in listed(record["missing"], None, "missing")]
+        require(type(record["partial"]) is bool and record["partial"] == bool(self.missing),
+                "partial is {}, but {} parts are missing", shown(record["partial"]), len(self.missing))
+        self.sha256 = hashes(record["sha256"], HASHES)
+        method = hashlib.sha256()
+        for part in (FORMAT, record["method"], shape, str(kdop), self.clip, *self.missing):
+            data = part.encode("utf-8", "surrogatepass")
+            method.update(b"%d:%b" % (len(data), data))
+        self.agree("method", method)
+
+    def agree(self, what, found):
+        require(found.hexdigest() == self.sha256[what], "the SHA-256 of the {} is another than stated", what)
+
+
+def hashes(record, names):
+    require(type(record) is dict and record.keys() == names, "sha256 does not have {}", ", ".join(sorted(names)))
+    for name, value in record.items():
+        require(type(value) is str and re.fullmatch("[0-9a-f]{64}", value),
+                "the SHA-256 of the {} is {}", name, shown(value))
+    return record
