@@ -23,22 +23,24 @@ struct NeoHookean {
         lambda = l.lambda + 5.0 / 6 * l.mu;
         alpha = 1 + 0.75 * mu / lambda;
     }
-    // With D = F − I, δ = I − 3 and j = det F − 1: 3/8 μ (δ − 2j) + μ/2 (δ/4 − log(1 + δ/4)) + λ/2 j², and in δ − 2j the terms of
+    // With F = I + H, δ = I − 3 and j = det F − 1: 3/8 μ (δ − 2j) + μ/2 (δ/4 − log(1 + δ/4)) + λ/2 j², and in δ − 2j the terms of
     // first order have cancelled, so that small strains lose no digits.
-    double density(std::size_t, const Mat3& f) const
+    double density(std::size_t, const Mat3& h) const
     {
-        const Mat3 d = f - Mat3::Identity();
-        const double trace = d.trace(), second = trace * trace - d.cwiseProduct(d.transpose()).sum(), third = d.determinant();
-        const double delta = 2 * trace + d.squaredNorm(), j = trace + 0.5 * second + third;
-        return 0.375 * mu * (d.squaredNorm() - second - 2 * third) + 0.5 * mu * (0.25 * delta - std::log1p(0.25 * delta)) + 0.5 * lambda * j * j;
+        const double trace = h.trace(), minors = cofactor(h).trace(), third = h.determinant();
+        const double delta = 2 * trace + h.squaredNorm(), j = trace + minors + third;
+        return 0.375 * mu * (h.squaredNorm() - 2 * minors - 2 * third) + 0.5 * mu * (0.25 * delta - std::log1p(0.25 * delta)) + 0.5 * lambda * j * j;
     }
-    void add_stress(std::size_t, const Mat3& f, Mat3& p) const
+    // As in the kernel.
+    void add_stress(std::size_t, const Mat3& h, Mat3& p) const
     {
-        p += mu * (1 - 1 / (f.squaredNorm() + 1)) * f + lambda * (f.determinant() - alpha) * cofactor(f);
+        const double delta = 2 * h.trace() + h.squaredNorm();
+        const Mat3 c = cofactor_change(h), f = Mat3::Identity() + h;
+        p += 0.75 * mu * (h - c) + mu * delta / (4 * (4 + delta)) * f + lambda * volume_change(h) * (Mat3::Identity() + c);
     }
     void add_all_stresses(const Configuration& c, MatrixField& stress) const
     {
-        add_neo_hookean_stress(mu, lambda, alpha, c.body.volume, c.deformation, stress);
+        add_neo_hookean_stress(mu, lambda, c.body.volume, c.reference.rotation, c.strain, stress);
     }
     void add_curvature(std::size_t, const Mat3& f, Mat9& h) const
     {
