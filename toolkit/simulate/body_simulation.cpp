@@ -7,6 +7,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include <Eigen/Geometry>
 #include <Eigen/SVD>
 
 #include "toolkit/simulate/explicit_step.hpp"
@@ -114,9 +115,13 @@ Reference BodySimulation::fitted(const Field& u) const
         a += body_.mass[i] * (reference_.rotation * x + (at(u, i) - mean)) * x.transpose();
     }
     const Eigen::JacobiSVD<Mat3> svd(a, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    if (a.allFinite() && svd.singularValues()[1] > 1e-6 * svd.singularValues()[0]) { // on a line nothing says how it is turned
+    if (a.allFinite() && svd.singularValues()[0] > 0) {
         const Mat3 r = svd.matrixU() * svd.matrixV().transpose();
-        to.rotation = r.determinant() > 0 ? r : Mat3(svd.matrixU() * Vec3(1, 1, -1).asDiagonal() * svd.matrixV().transpose());
+        Mat3 turned = r.determinant() > 0 ? r : Mat3(svd.matrixU() * Vec3(1, 1, -1).asDiagonal() * svd.matrixV().transpose());
+        if (!(svd.singularValues()[1] > 1e-6 * svd.singularValues()[0])) // a line: by the least turn
+            turned = Eigen::Quaterniond::FromTwoVectors(reference_.rotation * svd.matrixV().col(0), svd.matrixU().col(0)).toRotationMatrix() * reference_.rotation;
+        if ((turned - reference_.rotation).norm() > 0x1p-26)
+            to.rotation = turned;
     }
     to.move((reference_.rotation - to.rotation) * rest + mean);
     return to;
@@ -168,8 +173,10 @@ void BodySimulation::add_forces(const Configuration& c, Field& force, std::optio
         Field& out = greatest ? part : force;
         timed(effects_[e], [&](const Effect& effect) { effect.add_forces(c, {out, stress_, spring_}); });
         if (greatest) {
-            *applied = std::max(*applied, greatest_acceleration(part));
-            *greatest = std::max(*greatest, *applied);
+            const double most = greatest_acceleration(part);
+            *greatest = std::max(*greatest, most);
+            if (!effects_[e].effect->dissipates() && !effects_[e].effect->has_springs())
+                *applied = std::max(*applied, most);
             whole(force) += whole(part);
         }
     }

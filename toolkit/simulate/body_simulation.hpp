@@ -35,7 +35,7 @@ struct StepReport {
     int projected = 0;       ///< iterations that needed a positive semidefinite Hessian
     double residual = 0;     ///< m/s², of the last step: the greatest error of an acceleration; 0 for the explicit integrator
     double acceleration = 0; ///< m/s², of the last step: what the tolerance was relative to
-    bool at_rounding = false; ///< the residual is what rounding leaves, and within the tolerance only of the forces inside the body
+    bool at_rounding = false; ///< the residual is what rounding leaves of forces inside the body that balance (ImplicitStep)
     double kinetic = 0, potential = 0; ///< J, at the end
     double seconds = 0;      ///< of wall time
     std::string failure;     ///< why it could not be made; the state is that before it
@@ -100,7 +100,8 @@ private:
     void add_forces(const Configuration& c, Field& force, std::optional<std::size_t> only = {}, double* greatest = nullptr, double* applied = nullptr);
     double greatest_acceleration(const Field& force) const;
     /// The reference that fits displacements from the present one best, by mass; the present one where pins hold the body, so that
-    /// these stay where they are to the last bit.
+    /// these stay where they are to the last bit. A turn by less than 2⁻²⁶ is left to the displacements: they are fine enough, and two
+    /// rotations of doubles differ by a strain of some u.
     Reference fitted(const Field& u) const;
     /// Changes the reference; `fields`: displacements that are to stay where they are.
     void refer_to(const Reference& to, std::initializer_list<Field*> fields);

@@ -14,6 +14,7 @@ namespace cinch {
 namespace {
 
 constexpr double unit = 0x1p-53; // of rounding
+constexpr double balanced = 0x1p-32; // see the header: of the forces inside a body
 
 std::string in_si(double acceleration)
 {
@@ -30,6 +31,8 @@ ImplicitStep::ImplicitStep(BodySimulation& body, const Integration& integration)
         f->assign(4 * body.body_.size(), 0);
     for (const double m : body.body_.mass)
         mass_ += m;
+    for (const Vec3& p : body.body_.rest)
+        size_ = std::max(size_, (p - body.body_.rest[0]).norm());
 }
 
 void ImplicitStep::advance(double dt_s, double longest_s, StepReport& report)
@@ -129,14 +132,16 @@ ImplicitStep::Accelerations ImplicitStep::gradient(const Configuration& c, doubl
     return a;
 }
 
-// What rounding does to E: u times the magnitudes that are summed; and per node u times the stiffness times ‖H‖², as an error of u ‖H‖ in
-// H changes its energy by that (after plastic flow errors are u, not u ‖H‖). The factor 16 covers the operations of either.
+// What rounding does to E: u times the magnitudes that are summed, 16 operations each; and of every node the stress, at most its stiffness
+// times ‖H‖, times the error of H, at most 4 (n_k/2 + 16) u ‖H‖ as Σ_j ‖d_kj‖ ‖u_j − u_k‖ is at most 4 ‖H‖ about, and u after plastic flow.
 double ImplicitStep::rounding_of(const Configuration& c, const Objective& e, double dt) const
 {
-    double strained = 0;
-    for (std::size_t i = 0; i < b_.local_.size(); ++i)
-        strained += b_.local_[i].norm() * (matrix_at(c.strain, i).squaredNorm() + (c.plastic_inverse.empty() ? 0 : 1));
-    return 16 * unit * (e.magnitude + dt * dt * strained);
+    double stresses = 0;
+    for (std::size_t k = 0; k < b_.local_.size(); ++k) {
+        const double strain = matrix_at(c.strain, k).norm(), operations = 0.5 * (b_.body_.row[k + 1] - b_.body_.row[k]) + 16;
+        stresses += b_.local_[k].norm() * strain * (4 * operations * strain + (c.plastic_inverse.empty() ? 0 : 32));
+    }
+    return unit * (16 * e.magnitude + dt * dt * stresses);
 }
 
 // m/s², see the header: the greatest error that rounding may leave in an acceleration. Beside the stresses there are the springs to
@@ -170,14 +175,18 @@ double ImplicitStep::rounding_bound(const Configuration& c, double dt) const
     return most;
 }
 
-// m/s²: the greatest sum of the magnitudes of what single neighbours pull a node by, over its mass. Of the stresses of the last gradient.
-double ImplicitStep::greatest_pull() const
+// m/s²: the greatest sum of the magnitudes of what single neighbours pull a node by, over its mass. Of the last gradient's stresses and
+// springs, as scatter_stresses() carries them.
+double ImplicitStep::greatest_pull(const Field& u) const
 {
     const MeshlessBody& body = b_.body_;
     std::vector<double> pull(body.size(), 0);
     for (std::size_t k = 0; 12 * k < b_.stress_.size(); ++k)
         for (std::uint32_t e = body.row[k]; e < body.row[k + 1]; ++e) {
-            const double size = (matrix_at(b_.stress_, k) * body.d(e)).norm();
+            Vec3 force = matrix_at(b_.stress_, k) * body.d(e);
+            if (!b_.spring_.empty())
+                force += b_.spring_[k] * body.kernel(e) * (at(u, k) - at(u, body.neighbour[e]));
+            const double size = force.norm();
             pull[body.neighbour[e]] += size;
             pull[k] += size;
         }
@@ -363,9 +372,9 @@ bool ImplicitStep::step(double dt, const Field& rigid, StepReport& report)
                     e = objective(u, time, dt);
                     continue;
                 }
-                const double pull = greatest_pull();
-                const bool at_rest = std::max(a.greatest, pull) <= bound && a.applied <= integration_.tolerance * bound;
-                if (!(a.residual <= integration_.tolerance * pull) && !at_rest)
+                const double pull = greatest_pull(u);
+                const bool at_rest = a.greatest * dt * dt <= unit * size_ || (std::max(a.greatest, pull) <= bound && a.applied <= balanced * a.residual);
+                if (!(a.residual <= balanced * pull) && !at_rest)
                     return fail("rounding: " + short_of);
                 report.at_rounding = true;
                 break;
@@ -386,13 +395,13 @@ bool ImplicitStep::step(double dt, const Field& rigid, StepReport& report)
         const double reduction = std::clamp(std::sqrt(a.residual / first_residual), 1e-6, 0.1);
         if (!solve(c, dt, reduction, report)) {
             if (projected || !integration_.project)
-                return fail("the energy curves down in a direction that could not be mended");
+                return fail("the energy curves down in a direction that could not be mended; " + short_of);
             projected = true;
             project();
             ++report.projected;
             precondition(c, dt);
             if (!solve(c, dt, reduction, report))
-                return fail("the energy curves down in a direction that could not be mended");
+                return fail("the energy curves down in a direction that could not be mended; " + short_of);
         }
         const double slope = whole(gradient_).dot(whole(direction_));
         // Where the decrease of E would drown in rounding, take the step on trust, and go on while the residual falls.
@@ -414,7 +423,7 @@ bool ImplicitStep::step(double dt, const Field& rigid, StepReport& report)
             }
             if (length < 1e-12) {
                 if (projected || !integration_.project)
-                    return fail("no decrease of the energy along a direction of descent");
+                    return fail("no decrease of the energy along a direction of descent; " + short_of);
                 break;
             }
         }

@@ -19,10 +19,11 @@ namespace cinch {
 /// e_k = (n_k/2 + 8) u Σ_j ‖d_kj‖ (‖u_j‖ + ‖u_k‖), and that of a stress, in whose 32 operations no parts cancel, ‖∂P/∂J‖ (e_k + 32 u ‖H_k‖)
 /// (and 32 u more after plastic flow, whose F_p⁻¹ is no small change). rounding_bound() carries these to the nodes: no iteration gets
 /// further than that. If r no longer falls there, the reference is fitted to the iterate, which makes the u_i as small as they can be,
-/// and once more. What then is left is accepted only if it is within the tolerance of the forces that act inside the body (the pulls of
-/// single neighbours, which may be far greater than their sum: a body strained and at rest), or if the only accelerations that the step
-/// has are such errors (a body at rest). Everything else is a failure: time, residual and what it was to be are reported, and the state
-/// stays that before it.
+/// and once more. What then is left is accepted only where nothing but such errors happens:
+/// - r is less than 2⁻³² of the forces inside the body, the pulls of single neighbours: a body strained and at rest, whose forces balance;
+/// - the greatest acceleration, r included, moves no node by a rounding of the body's size in the step: what has come to rest;
+/// - all accelerations and pulls are below that bound, and no effect from outside has a force above 2⁻³² r: what is at rest.
+/// Everything else is a failure: residual and what it was to be are reported, and the state stays that before it.
 class ImplicitStep {
 public:
     ImplicitStep(BodySimulation& body, const Integration& integration);
@@ -32,7 +33,8 @@ private:
     struct Objective {
         double value, magnitude; ///< E, and the sum of the magnitudes of its parts, for rounding
     };
-    /// Accelerations, m/s², at an iterate: the greatest error of one; the greatest; the greatest of a single effect's force on nodes.
+    /// Accelerations, m/s², at an iterate: the greatest error of one; the greatest; the greatest of a single effect's force on nodes,
+    /// of effects that act from outside.
     struct Accelerations {
         double residual = 0, greatest = 0, applied = 0;
     };
@@ -45,7 +47,7 @@ private:
     void apply_preconditioner();
     double rounding_of(const Configuration& c, const Objective& e, double dt) const;
     double rounding_bound(const Configuration& c, double dt) const;
-    double greatest_pull() const;
+    double greatest_pull(const Field& u) const;
     void project();
     bool solve(const Configuration& c, double dt, double reduction, StepReport& report); ///< false: negative curvature
 
@@ -56,7 +58,7 @@ private:
     std::vector<double> held_; ///< N/m, of forces that depend on where a node is in the world
     Field arm_;                ///< from the centre of mass; empty where pins hold the body
     Mat3 inverse_inertia_ = Mat3::Zero();
-    double mass_ = 0;
+    double mass_ = 0, size_ = 0; ///< kg, m, of the body
 };
 
 } // namespace cinch
