@@ -16,7 +16,7 @@ namespace cinch {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr std::string_view magic = "cinchchk2";
+constexpr std::string_view magic = "cinchchk3";
 
 bool is_text(const std::string& file) { return file.ends_with(".jsonl"); }
 

@@ -24,7 +24,7 @@ using Json = nlohmann::ordered_json;
 
 struct BodyTotals {
     std::size_t steps = 0, iterations = 0, products = 0, projected = 0, at_rounding = 0;
-    double residual = 0;
+    double residual = 0, relative = 0; ///< greatest; of the relative ones
     StepReport last;
 };
 
@@ -76,7 +76,7 @@ struct Result {
 Json energies_of(const Simulation& simulation, const std::string& scene, std::size_t b, const StepReport& r)
 {
     return {{"experiment", "simulate"}, {"scene", scene}, {"frame", simulation.frame()}, {"time_s", simulation.time_s()}, {"body", simulation.bodies()[b].name},
-            {"substeps", r.substeps}, {"iterations", r.iterations}, {"products", r.products}, {"residual_m_per_s2", r.residual}, {"kinetic_j", r.kinetic}, {"potential_j", r.potential}};
+            {"substeps", r.substeps}, {"iterations", r.iterations}, {"products", r.products}, {"residual_m_per_s2", r.residual}, {"acceleration_m_per_s2", r.acceleration}, {"kinetic_j", r.kinetic}, {"potential_j", r.potential}};
 }
 
 Result run(const SimulateOptions& options, Simulation& simulation, FrameOutput& output, RecordOutput& records)
@@ -111,6 +111,7 @@ Result run(const SimulateOptions& options, Simulation& simulation, FrameOutput& 
             t.projected += static_cast<std::size_t>(r.projected);
             t.at_rounding += r.at_rounding;
             t.residual = std::max(t.residual, r.residual);
+            t.relative = std::max(t.relative, r.acceleration > 0 ? r.residual / r.acceleration : 0);
             t.last = r;
             result.seconds += r.seconds;
             result.steps += static_cast<std::size_t>(r.substeps);
@@ -196,7 +197,7 @@ void print_tables(const SimulateOptions& options, const Simulation& simulation, 
         std::vector<std::string> row{simulation.bodies()[b].name, grouped(t.steps)};
         if (!is_explicit)
             for (const std::string& cell : {fmt::format("{:.1f}", static_cast<double>(t.iterations) / steps), fmt::format("{:.0f}", static_cast<double>(t.products) / steps),
-                                            grouped(t.projected), fmt::format("{:.1e}", t.residual)})
+                                            grouped(t.projected), fmt::format("{:.1e}", t.residual), fmt::format("{:.1e}", t.relative)})
                 row.push_back(cell);
         row.push_back(fmt::format("{:.4g}", t.last.kinetic));
         row.push_back(fmt::format("{:.4g}", t.last.potential));
@@ -206,7 +207,7 @@ void print_tables(const SimulateOptions& options, const Simulation& simulation, 
     }
     std::vector<std::string> header{"body", "steps"};
     if (!is_explicit)
-        for (const char* name : {"Newton", "CG", "mended", "residual"})
+        for (const char* name : {"Newton", "CG", "mended", "residual", "relative"})
             header.emplace_back(name);
     header.emplace_back("kinetic J");
     header.emplace_back("potential J");
@@ -215,7 +216,8 @@ void print_tables(const SimulateOptions& options, const Simulation& simulation, 
         fmt::print("and {} more bodies\n", result.bodies.size() - rows.size());
     if (!is_explicit)
         fmt::print("Newton, CG: iterations and Hessian products per step. mended: iterations whose\n"
-                   "Hessian had to be made semidefinite. residual: largest left, m/s2.\n");
+                   "Hessian had to be made semidefinite. residual: greatest error of an acceleration\n"
+                   "that is left, m/s2. relative: to the greatest acceleration of its step.\n");
     if (options.explain) {
         std::string absent = "Left out of this scene, and so never constructed:";
         for (const std::string& name : effect_names()) {

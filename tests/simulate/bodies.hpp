@@ -34,6 +34,19 @@ inline Field moved(const MeshlessBody& body, const Mat3& a, const Vec3& b, doubl
     return x;
 }
 
+/// The energy of one effect with the nodes at `x`.
+inline double energy_at(const Effect& effect, const MeshlessBody& body, const DeformableSurface* surface, const Field& x)
+{
+    MatrixField d, h, j;
+    Field u = x;
+    for (std::size_t i = 0; i < body.size(); ++i)
+        at(u, i) -= body.rest[i];
+    const Reference reference;
+    measure(body, reference.rotation, u, Completion::on, d, h, j);
+    static const std::vector<Mat3> no_plasticity;
+    return effect.energy({body, surface, reference, x, u, d, h, j, no_plasticity});
+}
+
 inline Vec3 total(const Field& f)
 {
     Vec3 sum = Vec3::Zero();

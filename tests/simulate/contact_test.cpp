@@ -159,12 +159,7 @@ TEST_CASE("contact forces are the derivative of their energy, their product is t
     const Field x = body.positions(), v = body.velocities();
     auto energy = [&](const Field& y) {
         body.place(y, v);
-        MatrixField g(12 * y.size() / 4), j;
-        gather_gradients(lists_of(body.body()), y, g);
-        j = g;
-        complete(body.body(), j);
-        static const std::vector<Mat3> no_plasticity;
-        return contact_of(body).energy({body.body(), &*body.surface(), y, g, j, no_plasticity, 0});
+        return test::energy_at(contact_of(body), body.body(), &*body.surface(), y);
     };
     const Field f = body.forces(slot);
     double scale = 0;

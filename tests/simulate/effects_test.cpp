@@ -75,13 +75,7 @@ BodySimulation with(const MeshlessBody& body, const Named& named, bool remember)
 double energy(BodySimulation& s, const Field& x)
 {
     // potential() leaves out what dissipates; the effect itself does not.
-    const MeshlessBody& body = s.body();
-    MatrixField g(12 * body.size()), j;
-    gather_gradients(lists_of(body), x, g);
-    j = g;
-    complete(body, j);
-    static const std::vector<Mat3> no_plasticity;
-    return s.effects()[0].effect->energy({body, nullptr, x, g, j, no_plasticity, 0});
+    return test::energy_at(*s.effects()[0].effect, s.body(), nullptr, x);
 }
 
 Field forces_at(BodySimulation& s, const Field& x)
@@ -188,7 +182,8 @@ TEST_CASE("forces on a surface go to the nodes with their power")
     gather_gradients(lists_of(body), x, g);
     gather_gradients(lists_of(body), dx, dg);
     const std::vector<Mat3> no_plasticity;
-    const Configuration c{body, &surface, x, g, g, no_plasticity, 0};
+    const Reference reference;
+    const Configuration c{body, &surface, reference, x, x, g, g, g, no_plasticity};
     Field force(x.size(), 0);
     std::vector<double> spring;
     const Vec3 f(1, -2, 0.5);
@@ -201,7 +196,7 @@ TEST_CASE("forces on a surface go to the nodes with their power")
     whole(y) += whole(dx);
     MatrixField gy(g.size());
     gather_gradients(lists_of(body), y, gy);
-    CHECK((point({body, &surface, y, gy, gy, no_plasticity, 0}, 0) - point(c, 0) - point_change(c, 0, dx, dg)).norm() < 1e-12);
+    CHECK((point({body, &surface, reference, y, y, gy, gy, gy, no_plasticity}, 0) - point(c, 0) - point_change(c, 0, dx, dg)).norm() < 1e-12);
 }
 
 TEST_CASE("effects that are not added are not constructed, store nothing, and J is only computed where one needs it")

@@ -4,7 +4,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <sstream>
 #include <stdexcept>
+
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
 
 #include "toolkit/simulate/explicit_step.hpp"
 #include "toolkit/simulate/implicit_step.hpp"
@@ -24,8 +28,17 @@ BodySimulation::BodySimulation(MeshlessBody body, std::optional<DeformableSurfac
         throw std::invalid_argument("BodySimulation: the surface's weights are of other nodes");
     x_.assign(4 * body_.size(), 0);
     v_ = x_;
-    for (std::size_t i = 0; i < body_.size(); ++i)
-        at(x_, i) = body_.rest[i];
+    u_ = v_;
+    from_origin_ = v_;
+    Vec3 low = Vec3::Constant(HUGE_VAL), high = -low, mean = Vec3::Zero();
+    for (const Vec3& p : body_.rest) {
+        low = low.cwiseMin(p);
+        high = high.cwiseMax(p);
+        mean += p / static_cast<double>(body_.size());
+    }
+    if (mean.stableNorm() > (high - low).stableNorm())
+        reference_.centre = reference_.origin = mean;
+    update_positions();
     pinned_.assign(body_.size(), 0);
 }
 
@@ -48,39 +61,134 @@ void BodySimulation::add(Pin pin)
 
 void BodySimulation::place(const Field& positions, const Field& velocities)
 {
+    reference_.rotation = Mat3::Identity();
+    reference_.origin = reference_.low = Vec3::Zero();
+    Vec3 mean = Vec3::Zero();
+    for (std::size_t i = 0; i < body_.size(); ++i)
+        mean += (at(positions, i) - reference_.place(body_.rest[i])) / static_cast<double>(body_.size());
+    reference_.origin = mean;
+    for (std::size_t i = 0; i < body_.size(); ++i)
+        at(u_, i) = (at(positions, i) - mean) - reference_.place(body_.rest[i]);
     x_ = positions;
     v_ = velocities;
     time_s_ = 0;
     zero_pinned(v_);
 }
 
-Configuration BodySimulation::configure(const Field& x, double time_s)
+void BodySimulation::place(const Vec3& position, const Mat3& rotation, const Field& velocities)
 {
-    const Configuration c{body_, surface_ ? &*surface_ : nullptr, x, gradient_, body_.deficient.empty() ? gradient_ : deformation_, plastic_inverse_, time_s};
+    reference_.origin = position;
+    reference_.low = Vec3::Zero();
+    reference_.rotation = rotation;
+    if (reference_.centre != Vec3::Zero())
+        reference_.move(rotation * reference_.centre);
+    std::fill(u_.begin(), u_.end(), 0);
+    v_ = velocities;
+    time_s_ = 0;
+    zero_pinned(v_);
+    update_positions();
+}
+
+void BodySimulation::update_positions()
+{
+    for (std::size_t i = 0; i < body_.size(); ++i)
+        at(x_, i) = reference_.origin + (reference_.low + (reference_.place(body_.rest[i]) + at(u_, i)));
+}
+
+Reference BodySimulation::fitted(const Field& u) const
+{
+    Reference to = reference_;
+    if (!pins_.empty())
+        return to;
+    double mass = 0;
+    Vec3 mean = Vec3::Zero(), rest = Vec3::Zero();
+    for (std::size_t i = 0; i < body_.size(); ++i) {
+        mass += body_.mass[i];
+        mean += body_.mass[i] * at(u, i);
+        rest += body_.mass[i] * (body_.rest[i] - reference_.centre);
+    }
+    mean /= mass;
+    rest /= mass;
+    Mat3 a = Mat3::Zero(); // Σ m (X − mean X) (x − mean x)ᵀ, whose polar factor is the rotation
+    for (std::size_t i = 0; i < body_.size(); ++i) {
+        const Vec3 x = (body_.rest[i] - reference_.centre) - rest;
+        a += body_.mass[i] * (reference_.rotation * x + (at(u, i) - mean)) * x.transpose();
+    }
+    const Eigen::JacobiSVD<Mat3> svd(a, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    if (a.allFinite() && svd.singularValues()[0] > 0) {
+        const Mat3 r = svd.matrixU() * svd.matrixV().transpose();
+        Mat3 turned = r.determinant() > 0 ? r : Mat3(svd.matrixU() * Vec3(1, 1, -1).asDiagonal() * svd.matrixV().transpose());
+        if (!(svd.singularValues()[1] > 1e-6 * svd.singularValues()[0])) // a line: by the least turn
+            turned = Eigen::Quaterniond::FromTwoVectors(reference_.rotation * svd.matrixV().col(0), svd.matrixU().col(0)).toRotationMatrix() * reference_.rotation;
+        if ((turned - reference_.rotation).norm() > 0x1p-26)
+            to.rotation = turned;
+    }
+    to.move((reference_.rotation - to.rotation) * rest + mean);
+    return to;
+}
+
+void BodySimulation::refer_to(const Reference& to, std::initializer_list<Field*> fields)
+{
+    const Mat3 turn = reference_.rotation - to.rotation;
+    const Vec3 way = reference_.way_to(to);
+    for (Field* u : fields)
+        for (std::size_t i = 0; i < body_.size(); ++i)
+            at(*u, i) += turn * (body_.rest[i] - reference_.centre) - way;
+    reference_ = to;
+}
+
+Configuration BodySimulation::configure(const Field& u, double time_s, const Vec3& datum)
+{
+    for (std::size_t i = 0; i < body_.size(); ++i)
+        at(from_origin_, i) = reference_.place(body_.rest[i]) + at(u, i);
+    const Configuration c{body_, surface_ ? &*surface_ : nullptr, reference_, from_origin_, u, gradient_, strain_, deformation_, plastic_inverse_, time_s, datum};
     if (!needs_deformation_)
         return c;
     const auto start = Clock::now();
-    gradient_.resize(12 * body_.size());
-    gather_gradients(lists_of(body_), x, gradient_);
-    if (!body_.deficient.empty()) {
-        deformation_ = gradient_;
-        complete(body_, deformation_, completion_);
-    }
+    measure(body_, reference_.rotation, u, completion_, gradient_, strain_, deformation_);
     shared_s_ += since(start);
     return c;
 }
 
-void BodySimulation::add_forces(const Configuration& c, Field& force, std::optional<std::size_t> only)
+double BodySimulation::greatest_acceleration(const Field& force) const
+{
+    double most = 0;
+    for (std::size_t i = 0; i < body_.size(); ++i)
+        if (!pinned_[i])
+            most = std::max(most, at(force, i).norm() / body_.mass[i]);
+    return most;
+}
+
+void BodySimulation::add_forces(const Configuration& c, Field& force, std::optional<std::size_t> only, double* greatest, double* applied)
 {
     if (needs_deformation_)
         stress_.assign(12 * body_.size(), 0);
     std::fill(spring_.begin(), spring_.end(), 0);
-    for (std::size_t e = 0; e < effects_.size(); ++e)
-        if (!only || *only == e)
-            timed(effects_[e], [&](const Effect& effect) { effect.add_forces(c, {force, stress_, spring_}); });
+    Field part;
+    for (std::size_t e = 0; e < effects_.size(); ++e) {
+        if (only && *only != e)
+            continue;
+        if (greatest)
+            part.assign(force.size(), 0);
+        Field& out = greatest ? part : force;
+        timed(effects_[e], [&](const Effect& effect) { effect.add_forces(c, {out, stress_, spring_}); });
+        if (greatest) {
+            const double most = greatest_acceleration(part);
+            *greatest = std::max(*greatest, most);
+            if (!effects_[e].effect->dissipates() && !effects_[e].effect->has_springs())
+                *applied = std::max(*applied, most);
+            whole(force) += whole(part);
+        }
+    }
     if (needs_deformation_) {
         const auto start = Clock::now();
-        scatter_stresses(lists_of(body_), stress_, spring_, c.x, force);
+        if (greatest)
+            part.assign(force.size(), 0);
+        scatter_stresses(lists_of(body_), stress_, spring_, c.u, greatest ? part : force);
+        if (greatest) {
+            *greatest = std::max(*greatest, greatest_acceleration(part));
+            whole(force) += whole(part);
+        }
         shared_s_ += since(start);
     }
 }
@@ -152,23 +260,23 @@ void BodySimulation::add_local_product(const Field& p, Field& out)
 void BodySimulation::finish(double from_s, double dt_s)
 {
     for (const Pin& pin : pins_)
-        for (std::size_t k = 0; k < pin.nodes.size(); ++k) {
-            const Vec3 now = pin.path(k, from_s + dt_s);
-            at(v_, pin.nodes[k]) = (now - pin.path(k, from_s)) / dt_s;
-            at(x_, pin.nodes[k]) = now;
-        }
+        for (std::size_t k = 0; k < pin.nodes.size(); ++k)
+            at(v_, pin.nodes[k]) = (pin.path(k, from_s + dt_s) - pin.path(k, from_s)) / dt_s;
+    move_pins(u_, from_s + dt_s);
     if (plastic_inverse_.empty())
         return;
-    const Configuration c = configure(x_, time_s_);
+    const Configuration c = configure(u_, time_s_);
     for (Slot& slot : effects_)
         timed(slot, [&](Effect& effect) { effect.flow(c, dt_s, plastic_inverse_); });
 }
 
-void BodySimulation::move_pins(Field& x, double time_s) const
+void BodySimulation::move_pins(Field& u, double time_s) const
 {
-    for (const Pin& pin : pins_)
+    for (const Pin& pin : pins_) {
+        const Vec3 origin = reference_.relative(pin.origin);
         for (std::size_t k = 0; k < pin.nodes.size(); ++k)
-            at(x, pin.nodes[k]) = pin.path(k, time_s);
+            at(u, pin.nodes[k]) = (pin.path(k, time_s) - reference_.place(body_.rest[pin.nodes[k]])) + origin;
+    }
 }
 
 void BodySimulation::zero_pinned(Field& f) const
@@ -190,28 +298,30 @@ StepReport BodySimulation::advance(double dt_s, const Integration& integration)
         report.potential = potential();
         return report;
     }
-    const Field x = x_, v = v_;
-    const std::vector<Mat3> plastic = plastic_inverse_;
+    std::ostringstream before;
+    save(before);
     const double time = time_s_;
     double turn = 0;
     for (const Pin& pin : pins_)
         turn = std::max(turn, pin.turn(time_s_, time_s_ + dt_s));
     const double step = std::min(integration.step_s, dt_s / std::max(1.0, std::ceil(turn / 0.4)));
-    if (!(dt_s / step <= most_substeps))
+    if (!(dt_s / step <= most_substeps)) {
         report.failure = "needs more than a million steps: a smaller frame, a longer step or a slower turn";
-    else if (integration.method == Integration::Method::explicit_euler)
+    } else if (integration.method == Integration::Method::explicit_euler) {
+        refer_to(fitted(u_), {&u_});
         ExplicitStep(*this, integration).advance(dt_s, step, report);
-    else
+    } else {
         ImplicitStep(*this, integration).advance(dt_s, step, report);
+    }
+    if (report.failure.empty())
+        update_positions();
     if (report.failure.empty() && !(whole(x_).allFinite() && whole(v_).allFinite() && std::all_of(plastic_inverse_.begin(), plastic_inverse_.end(), [](const Mat3& p) { return p.allFinite(); })))
         report.failure = "positions are no longer finite";
     report.dt_s = dt_s;
     report.seconds = since(start);
     if (!report.failure.empty()) {
-        x_ = x;
-        v_ = v;
-        plastic_inverse_ = plastic;
-        time_s_ = time;
+        std::istringstream back(before.str());
+        restore(back);
     } else {
         time_s_ = time + dt_s;
     }
@@ -220,15 +330,11 @@ StepReport BodySimulation::advance(double dt_s, const Integration& integration)
     return report;
 }
 
-std::vector<AffineMap> BodySimulation::frame()
+std::vector<AffineMap> BodySimulation::frame(const Vec3& from)
 {
-    if (!needs_deformation_) { // the surface needs J where no effect does
-        MatrixField j(12 * body_.size());
-        gather_gradients(lists_of(body_), x_, j);
-        complete(body_, j, completion_);
-        return transforms(body_, x_, j);
-    }
-    return transforms(body_, x_, configure(x_, time_s_).deformation);
+    MatrixField gradient, strain, deformation; // the surface needs J where no effect does
+    measure(body_, reference_.rotation, u_, completion_, gradient, strain, deformation);
+    return transforms(body_, reference_, u_, deformation, from);
 }
 
 double BodySimulation::kinetic() const
@@ -239,18 +345,18 @@ double BodySimulation::kinetic() const
     return sum;
 }
 
-double BodySimulation::potential() { return potential_at(x_, time_s_); }
+double BodySimulation::potential() { return potential_at(u_, time_s_, reference_.relative(Vec3::Zero())); }
 
 Field BodySimulation::forces(std::optional<std::size_t> only)
 {
     Field force(4 * body_.size(), 0);
-    add_forces(configure(x_, time_s_), force, only);
+    add_forces(configure(u_, time_s_), force, only);
     return force;
 }
 
 Field BodySimulation::stiffness(const Field& dx)
 {
-    const Configuration c = configure(x_, time_s_);
+    const Configuration c = configure(u_, time_s_);
     Field force(x_.size(), 0), product(x_.size(), 0);
     add_forces(c, force);
     assemble(c, Parts::all);
@@ -268,9 +374,9 @@ bool BodySimulation::pins_move(double from_s, double to_s) const
     return false;
 }
 
-double BodySimulation::potential_at(const Field& x, double time_s)
+double BodySimulation::potential_at(const Field& u, double time_s, const Vec3& datum)
 {
-    const Configuration c = configure(x, time_s);
+    const Configuration c = configure(u, time_s, datum);
     double sum = 0;
     for (Slot& slot : effects_)
         if (!slot.effect->dissipates())
@@ -281,6 +387,8 @@ double BodySimulation::potential_at(const Field& x, double time_s)
 void BodySimulation::save(std::ostream& out) const
 {
     write_raw<double>(out, {&time_s_, 1});
+    reference_.save(out);
+    write_raw<double>(out, u_);
     write_raw<double>(out, x_);
     write_raw<double>(out, v_);
     for (const Mat3& p : plastic_inverse_)
@@ -293,6 +401,8 @@ void BodySimulation::save(std::ostream& out) const
 void BodySimulation::restore(std::istream& in)
 {
     read_raw<double>(in, {&time_s_, 1});
+    reference_.restore(in);
+    read_raw<double>(in, u_);
     read_raw<double>(in, x_);
     read_raw<double>(in, v_);
     for (Mat3& p : plastic_inverse_)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <initializer_list>
 #include <iosfwd>
 #include <memory>
 #include <optional>
@@ -19,7 +20,7 @@ struct Integration {
     Method method = Method::implicit_euler;
     double step_s = 1.0 / 60;  ///< of the implicit integrator; of the explicit one the longest substep
     double safety = 0.6;       ///< explicit: share of the longest stable substep
-    double tolerance = 1e-4;   ///< implicit: greatest ‖∇E_i‖ / (m_i Δt²) that is left, m/s²
+    double tolerance = 1e-5;   ///< implicit: greatest error of an acceleration that is left, over the greatest one (ImplicitStep)
     int most_iterations = 200; ///< implicit: of Newton's method
     bool project = true;       ///< implicit: make the Hessian positive semidefinite where it proves not to be (off only in experiments)
     Completion completion = Completion::on;
@@ -32,8 +33,9 @@ struct StepReport {
     int substeps = 0, iterations = 0, products = 0; ///< Newton iterations; products with the Hessian
     int halved = 0;          ///< steps that were taken back and made in halves
     int projected = 0;       ///< iterations that needed a positive semidefinite Hessian
-    double residual = 0;     ///< m/s², see tolerance; 0 for the explicit integrator
-    bool at_rounding = false; ///< the residual is what rounding leaves, above the tolerance
+    double residual = 0;     ///< m/s², of the last step: the greatest error of an acceleration; 0 for the explicit integrator
+    double acceleration = 0; ///< m/s², of the last step: what the tolerance was relative to
+    bool at_rounding = false; ///< the residual is what rounding leaves of forces inside the body that balance (ImplicitStep)
     double kinetic = 0, potential = 0; ///< J, at the end
     double seconds = 0;      ///< of wall time
     std::string failure;     ///< why it could not be made; the state is that before it
@@ -56,7 +58,8 @@ public:
     void add(Pin pin);
 
     /// Advances by `dt_s` ≥ 0 in as many steps as the method and the pins' turning need; 0 changes nothing. Throws
-    /// std::invalid_argument for a negative or non-finite dt. If a step fails, says so and keeps the state before it.
+    /// std::invalid_argument for a negative or non-finite dt. If a step fails, says so and keeps the state before it,
+    /// what effects remember included.
     StepReport advance(double dt_s, const Integration& integration);
 
     const MeshlessBody& body() const { return body_; }
@@ -67,10 +70,13 @@ public:
     const Field& positions() const { return x_; }
     const Field& velocities() const { return v_; }
     void place(const Field& positions, const Field& velocities); ///< at time 0
+    /// The shape at rest, turned about its 0 and moved by `position`; without the rounding of positions in the world.
+    void place(const Vec3& position, const Mat3& rotation, const Field& velocities);
+    const Reference& reference() const { return reference_; }
     const std::vector<Mat3>& plastic_inverse() const { return plastic_inverse_; }
 
-    /// T_j of every node.
-    std::vector<AffineMap> frame();
+    /// T_j of every node, seen from a point of the world.
+    std::vector<AffineMap> frame(const Vec3& from = Vec3::Zero());
     /// Energies of the present state, J.
     double kinetic() const;
     double potential();
@@ -87,8 +93,19 @@ private:
     friend class ImplicitStep;
     friend class ExplicitStep;
 
-    Configuration configure(const Field& x, double time_s);
-    void add_forces(const Configuration& c, Field& force, std::optional<std::size_t> only = {});
+    /// At displacements u.
+    Configuration configure(const Field& u, double time_s, const Vec3& datum = Vec3::Zero());
+    /// `greatest`, where given: is raised to the greatest acceleration, m/s², of a node that is not pinned by one effect, or by all
+    /// stresses together; `applied`: to that by one effect alone.
+    void add_forces(const Configuration& c, Field& force, std::optional<std::size_t> only = {}, double* greatest = nullptr, double* applied = nullptr);
+    double greatest_acceleration(const Field& force) const;
+    /// The reference that fits displacements from the present one best, by mass; the present one where pins hold the body, so that
+    /// these stay where they are to the last bit. A turn by less than 2⁻²⁶ is left to the displacements: they are fine enough, and two
+    /// rotations of doubles differ by a strain of some u.
+    Reference fitted(const Field& u) const;
+    /// Changes the reference; `fields`: displacements that are to stay where they are.
+    void refer_to(const Reference& to, std::initializer_list<Field*> fields);
+    void update_positions();
     enum class Parts { all, stiffness, damping }; ///< of the second derivatives: all, of what does not dissipate, by velocity
     /// With Parts::all, add_forces must have been called for the same configuration before.
     void assemble(const Configuration& c, Parts parts);
@@ -99,9 +116,9 @@ private:
     void end_product(const Field& p, Field& out);
     /// The end of a step: pins in place, with their velocity, and what flows.
     void finish(double from_s, double dt_s);
-    void move_pins(Field& x, double time_s) const;
+    void move_pins(Field& u, double time_s) const;
     bool pins_move(double from_s, double to_s) const;
-    double potential_at(const Field& x, double time_s);
+    double potential_at(const Field& u, double time_s, const Vec3& datum);
     void zero_pinned(Field& f) const;
     template <class Call> static void timed(Slot& slot, const Call& call)
     {
@@ -121,10 +138,13 @@ private:
     double shared_s_ = 0;
 
     double time_s_ = 0;
-    Field x_, v_;
+    Reference reference_;
+    Field u_, v_; ///< displacements from the reference, velocities in the world
+    Field x_;     ///< positions in the world
     std::vector<Mat3> plastic_inverse_;
 
-    MatrixField gradient_, deformation_, stress_, change_; ///< scratch; empty unless some effect needs J
+    Field from_origin_; ///< scratch: positions from the reference's origin
+    MatrixField gradient_, strain_, deformation_, stress_, change_; ///< scratch; empty unless some effect needs J
     std::vector<double> spring_; ///< scratch; empty unless some effect has springs
     std::vector<Mat9> local_;
     std::vector<Mat3> block_;

@@ -22,9 +22,11 @@ void ContactSearch::add(BodySimulation& body, BodyContact& contact)
 
 void ContactSearch::find()
 {
+    // All that is compared is seen from near the bodies, so that it is as fine far away as anywhere.
+    origin_ = members_.empty() ? Vec3::Zero() : Vec3(members_.front().body->reference().origin);
     std::vector<BodyFrame> frames;
     for (Member& member : members_) {
-        member.maps = member.body->frame();
+        member.maps = member.body->frame(origin_);
         frames.push_back({member.maps});
     }
     collider_.update(frames);
@@ -46,7 +48,7 @@ void ContactSearch::find()
     for (const auto& [bodies, meeting] : of_bodies)
         part(bodies.first, bodies.second, meeting, contacts);
     for (std::size_t b = 0; b < members_.size(); ++b)
-        members_[b].contact->set(std::move(contacts[b]));
+        members_[b].contact->set(std::move(contacts[b]), origin_);
 }
 
 void ContactSearch::part(std::uint32_t a, std::uint32_t b, const Pairs& pairs, std::vector<std::vector<Contact>>& out) const

@@ -44,6 +44,7 @@ private:
     void part(std::uint32_t a, std::uint32_t b, const Pairs& pairs, std::vector<std::vector<Contact>>& out) const;
 
     double stiffness_;
+    Vec3 origin_ = Vec3::Zero(); ///< from where the last search saw the bodies
     Collider collider_;
     std::vector<Member> members_;
     std::size_t pairs_ = 0;

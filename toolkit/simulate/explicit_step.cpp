@@ -75,7 +75,7 @@ void ExplicitStep::advance(double dt_s, double longest_s, StepReport& report)
 {
     constexpr int between_estimates = 100; // some ten periods of the fastest mode
     double done = 0;
-    double stable = longest_stable(b_.configure(b_.x_, b_.time_s_)), cap = longest_s;
+    double stable = longest_stable(b_.configure(b_.u_, b_.time_s_)), cap = longest_s;
     while (done < dt_s) {
         if (integration_.cancelled && integration_.cancelled()) {
             report.failure = "cancelled";
@@ -94,8 +94,8 @@ void ExplicitStep::advance(double dt_s, double longest_s, StepReport& report)
         bool short_enough = true;
         for (int s = 0; s < run && short_enough; ++s)
             short_enough = substep(dt);
-        const bool finite = whole(b_.x_).allFinite() && whole(b_.v_).allFinite();
-        stable = finite ? longest_stable(b_.configure(b_.x_, b_.time_s_)) : 0;
+        const bool finite = whole(b_.u_).allFinite() && whole(b_.v_).allFinite();
+        stable = finite ? longest_stable(b_.configure(b_.u_, b_.time_s_)) : 0;
         if ((!(dt <= 0.95 * stable) || !short_enough) && dt > 1e-7 * dt_s) { // where they lead, these steps are too long: take them back
             const double too_long = dt;
             const Field mode = b_.slow_mode_;
@@ -103,7 +103,7 @@ void ExplicitStep::advance(double dt_s, double longest_s, StepReport& report)
             b_.restore(back);
             b_.slow_mode_ = finite ? mode : b_.slow_mode_;
             cap = std::min(cap, 0.4 * too_long);
-            stable = longest_stable(b_.configure(b_.x_, b_.time_s_));
+            stable = longest_stable(b_.configure(b_.u_, b_.time_s_));
             ++report.halved;
             continue;
         }
@@ -120,7 +120,7 @@ void ExplicitStep::advance(double dt_s, double longest_s, StepReport& report)
 bool ExplicitStep::substep(double dt)
 {
     const std::size_t n = b_.body_.size();
-    const Configuration c = b_.configure(b_.x_, b_.time_s_);
+    const Configuration c = b_.configure(b_.u_, b_.time_s_);
     force_.assign(4 * n, 0);
     b_.add_forces(c, force_);
     for (auto& slot : b_.effects_)
@@ -129,7 +129,7 @@ bool ExplicitStep::substep(double dt)
         if (b_.pinned_[i])
             continue;
         at(b_.v_, i) += dt / b_.body_.mass[i] * at(force_, i);
-        at(b_.x_, i) += dt * at(b_.v_, i);
+        at(b_.u_, i) += dt * at(b_.v_, i);
     }
     const double before = b_.time_s_;
     b_.time_s_ += dt;

@@ -81,7 +81,7 @@ std::vector<double> density_volumes(const MeshlessBody& body, const std::vector<
         s += 1 / sum[i] / static_cast<double>(n);
     }
     for (std::size_t i = 0; i < n; ++i)
-        volume[i] = std::pow(mean_distance[i], 3) / sum[i];
+        volume[i] = mean_distance[i] * mean_distance[i] * mean_distance[i] / sum[i];
     return volume;
 }
 

@@ -12,8 +12,9 @@ namespace cinch {
 /// Nodes whose places are prescribed; they are left out of what an integrator solves.
 struct Pin {
     std::vector<std::uint32_t> nodes;
-    std::function<Vec3(std::size_t place_in_nodes, double time_s)> path; ///< m
+    std::function<Vec3(std::size_t place_in_nodes, double time_s)> path; ///< m, seen from `origin`
     std::function<double(double from_s, double to_s)> turn; ///< greatest angle, rad, that it turns by; integrators make steps of at most 0.4
+    Vec3 origin = Vec3::Zero(); ///< m
 };
 
 /// Turning about an axis by angle(t): ω (t − ramp/2), with a smooth start over `ramp_s`, until `most`, rad, is reached (0: for ever);

@@ -15,7 +15,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr const char* name_characters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_."; // also of file names
 constexpr std::size_t most_nodes = 20000; // of a body
 constexpr JsonFields::Range length{1e-30, 1e30, false, "a number from 1e-30 to 1e30 (m)"};
-constexpr JsonFields::Range interval{1e-9, 1e6, false, "a number from 1e-9 to 1e6 (s)"};
+constexpr JsonFields::Range interval{1e-30, 1e30, false, "a number from 1e-30 to 1e30 (s)"};
 
 NodeSelection read_nodes(JsonFields& parent, const std::string& key)
 {
@@ -249,9 +249,10 @@ SceneBody read_body(const Json& json, const std::string& file, const std::string
     return body;
 }
 
-Integration read_integration(JsonFields& scene)
+Integration read_integration(JsonFields& scene, double frame_s)
 {
     Integration integration;
+    integration.step_s = frame_s;
     const Json* json = scene.find("integrator");
     if (!json)
         return integration;
@@ -330,7 +331,7 @@ Scene parse_scene(std::string_view text, const std::string& file, const std::str
     scene.frame_s = f.number("frame", interval, 1.0 / 60);
     if (scene.duration_s / scene.frame_s > 1e6)
         f.complain("duration", "makes more than a million frames");
-    scene.integration = read_integration(f);
+    scene.integration = read_integration(f, scene.frame_s);
 
     const Json& bodies = f.array("bodies");
     if (bodies.empty())

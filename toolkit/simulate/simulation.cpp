@@ -21,8 +21,9 @@ namespace {
 // Adds the effects of a scene to one body.
 class Builder {
 public:
-    Builder(const Scene& scene, const SceneBody& body, const std::string& file, const LoadedBody& loaded, const Field& start, BodySimulation& out)
-        : scene_(scene), body_(body), file_(file), loaded_(loaded), start_(start), out_(out)
+    /// `start`: where the nodes begin, seen from `origin`.
+    Builder(const Scene& scene, const SceneBody& body, const std::string& file, const LoadedBody& loaded, const Field& start, const Vec3& origin, BodySimulation& out)
+        : scene_(scene), body_(body), file_(file), loaded_(loaded), start_(start), origin_(origin), out_(out)
     {
     }
     void build()
@@ -61,6 +62,11 @@ private:
                 return elastic->young;
         complain("needs 'young', or an effect 'elastic' on the same body");
     }
+    Pin seen_from_origin(Pin made) const
+    {
+        made.origin = origin_;
+        return made;
+    }
     void pin(Pin made)
     {
         for (const std::uint32_t i : made.nodes) {
@@ -81,12 +87,14 @@ private:
     void add(const PullingTargetSpec& s)
     {
         PullingTarget pull{select(s.nodes), s.stiffness, {}};
-        if (s.clip)
+        if (s.clip) {
             pull.target = clip(pull.nodes);
-        else
+        } else {
+            pull.origin = origin_;
             pull.target = [places = starts(pull.nodes), s](std::size_t k, double t) {
                 return Vec3(places[k] + (s.ramp_s > 0 ? std::min(1.0, t / s.ramp_s) : 1.0) * s.offset);
             };
+        }
         out_.add(make_pulling(out_.body(), std::move(pull)));
     }
     void add(const ElasticSpec& s)
@@ -107,7 +115,7 @@ private:
     {
         std::vector<std::uint32_t> nodes = select(s.nodes);
         std::vector<Vec3> places = starts(nodes);
-        pin(fixed_pin(std::move(nodes), std::move(places)));
+        pin(seen_from_origin(fixed_pin(std::move(nodes), std::move(places))));
     }
     void add(const ScriptedSpec& s)
     {
@@ -115,11 +123,13 @@ private:
         std::vector<Vec3> places = starts(nodes);
         if (s.clip) {
             auto path = clip(nodes);
-            pin({std::move(nodes), std::move(path), [](double, double) { return 0.0; }});
+            pin({std::move(nodes), std::move(path), [](double, double) { return 0.0; }, Vec3::Zero()});
         } else if (s.velocity.norm() > 0) {
-            pin(sliding_pin(std::move(nodes), std::move(places), s.velocity, s.end_s));
+            pin(seen_from_origin(sliding_pin(std::move(nodes), std::move(places), s.velocity, s.end_s)));
         } else {
-            pin(turning_pin(std::move(nodes), std::move(places), s.turning));
+            Turning turning = s.turning;
+            turning.centre -= origin_;
+            pin(seen_from_origin(turning_pin(std::move(nodes), std::move(places), turning)));
         }
     }
 
@@ -128,6 +138,7 @@ private:
     const std::string& file_;
     const LoadedBody& loaded_;
     const Field& start_;
+    Vec3 origin_;
     BodySimulation& out_;
     std::string path_;
     std::vector<std::uint32_t> pinned_;
@@ -193,14 +204,18 @@ Simulation::Simulation(Scene scene, const std::string& file) : scene_(std::move(
         Field x(4 * n, 0), v(4 * n, 0);
         const Mat3 r = Eigen::AngleAxisd(spec.angle_deg * std::numbers::pi / 180, spec.axis.normalized()).toRotationMatrix();
         const bool clipped = follows_clip(scene_, spec) && loaded.clip;
+        const Vec3 origin = clipped ? Vec3::Zero() : spec.position;
         for (std::size_t i = 0; i < n; ++i) {
-            at(x, i) = clipped ? loaded.clip(i, 0) : Vec3(r * body.rest[i] + spec.position);
-            at(v, i) = spec.velocity + spec.spin.cross(Vec3(at(x, i) - spec.position));
+            at(x, i) = clipped ? loaded.clip(i, 0) : Vec3(r * body.rest[i]);
+            at(v, i) = spec.velocity + spec.spin.cross(clipped ? Vec3(at(x, i) - spec.position) : Vec3(at(x, i)));
         }
         bodies_.push_back({spec.name, BodySimulation(std::move(body), loaded.surface), std::move(notes)});
         BodySimulation& made = bodies_.back().simulation;
-        Builder(scene_, spec, file, loaded, x, made).build();
-        made.place(x, v);
+        Builder(scene_, spec, file, loaded, x, origin, made).build();
+        if (clipped)
+            made.place(x, v);
+        else
+            made.place(origin, r, v);
     }
     for (const SceneEffect& effect : scene_.effects)
         if (const auto* spec = std::get_if<ContactSpec>(&effect.what))

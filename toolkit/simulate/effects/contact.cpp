@@ -12,9 +12,10 @@ namespace {
 
 Vec3 normal_of(const Contact& c) { return Eigen::Map<const Vec3>(c.normal.data()); }
 
-double depth(const Configuration& at, const Contact& c)
+// `origin`: that of the plane, seen from the reference's.
+double depth(const Configuration& at, const Contact& c, const Vec3& origin)
 {
-    Vec3 p = Vec3::Zero();
+    Vec3 p = -origin;
     for (std::size_t i = 0; i < 3; ++i)
         p += c.share[i] * point(at, c.corner[i]);
     return c.offset - normal_of(c).dot(p);
@@ -40,25 +41,28 @@ template <class Visit> void each_weight(const Configuration& at, const Contact& 
 
 double BodyContact::energy(const Configuration& at) const
 {
+    const Vec3 origin = at.reference.relative(origin_);
     double sum = 0;
     for (const Contact& c : contacts_)
-        if (const double d = depth(at, c); d > 0)
+        if (const double d = depth(at, c, origin); d > 0)
             sum += 0.5 * c.stiffness * d * d;
     return sum;
 }
 
 void BodyContact::add_forces(const Configuration& at, Forces out) const
 {
+    const Vec3 origin = at.reference.relative(origin_);
     for (const Contact& c : contacts_)
-        if (const double d = depth(at, c); d > 0)
+        if (const double d = depth(at, c, origin); d > 0)
             push(at, c, c.stiffness * d, out);
 }
 
 void BodyContact::prepare_product(const Configuration& at, bool worst)
 {
+    const Vec3 origin = at.reference.relative(origin_);
     touching_.clear();
     for (std::size_t k = 0; k < contacts_.size(); ++k)
-        if (worst || depth(at, contacts_[k]) > 0)
+        if (worst || depth(at, contacts_[k], origin) > 0)
             touching_.push_back(k);
 }
 
@@ -97,7 +101,15 @@ double BodyContact::longest_step(const Configuration& at) const
     return longest;
 }
 
-void BodyContact::save(std::ostream& out) const { write_list(out, contacts_); }
-void BodyContact::restore(std::istream& in) { read_list(in, contacts_); }
+void BodyContact::save(std::ostream& out) const
+{
+    write_list(out, contacts_);
+    write_raw<double>(out, {origin_.data(), 3});
+}
+void BodyContact::restore(std::istream& in)
+{
+    read_list(in, contacts_);
+    read_raw<double>(in, {origin_.data(), 3});
+}
 
 } // namespace cinch

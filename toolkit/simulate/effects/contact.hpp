@@ -13,7 +13,7 @@ struct Contact {
     std::array<std::uint32_t, 3> corner{};
     std::array<double, 3> share{}; ///< ≥ 0, sum 1
     std::array<double, 3> normal{}; ///< of length 1
-    double offset = 0;             ///< the plane is normal·x = offset, m
+    double offset = 0;             ///< the plane is normal·x = offset, m, seen from the origin given with it
     double stiffness = 0;          ///< k, N/m
 };
 
@@ -22,7 +22,11 @@ class BodyContact final : public Effect {
 public:
     BodyContact() : Effect("contact") {}
 
-    void set(std::vector<Contact> contacts) { contacts_ = std::move(contacts); }
+    void set(std::vector<Contact> contacts, const Vec3& origin = Vec3::Zero())
+    {
+        contacts_ = std::move(contacts);
+        origin_ = origin;
+    }
     const std::vector<Contact>& contacts() const { return contacts_; }
 
     bool needs_deformation() const override { return true; }
@@ -38,6 +42,7 @@ public:
 
 private:
     std::vector<Contact> contacts_;
+    Vec3 origin_ = Vec3::Zero();          ///< of the world's, m
     std::vector<std::size_t> touching_; ///< in the configuration of prepare_product
 };
 

@@ -23,7 +23,8 @@ std::unique_ptr<Effect> make_pulling(const MeshlessBody& body, PullingForce pull
 struct PullingTarget {
     std::vector<std::uint32_t> nodes;
     double stiffness = 0;
-    std::function<Vec3(std::size_t place_in_nodes, double time_s)> target; ///< m
+    std::function<Vec3(std::size_t place_in_nodes, double time_s)> target; ///< m, seen from `origin`
+    Vec3 origin = Vec3::Zero(); ///< m
 };
 std::unique_ptr<Effect> make_pulling(const MeshlessBody& body, PullingTarget pull);
 
@@ -56,7 +57,8 @@ struct PlasticFlow {
 std::unique_ptr<Effect> make_plasticity(const PlasticFlow& flow);
 
 /// A plane that pushes back: ½ k d² at depth d below it, k (N/m) of the whole body spread evenly over the vertices of its surface, or
-/// over its nodes; friction by the depth and the slip of the step before.
+/// over its nodes; friction by the depth and the slip of the step before. It fades below a slow speed, s √(a V^⅓) with s = 5·10⁻⁴, a the
+/// acceleration by which the plane holds the body and V its volume: a millimetre per second for a body of half a metre at rest.
 struct Ground {
     Vec3 point = Vec3::Zero(), normal = Vec3::UnitZ();
     double stiffness = 0, friction = 0;

@@ -12,7 +12,7 @@ public:
     {
         double sum = 0;
         for (std::size_t i = 0; i < c.body.size(); ++i)
-            sum -= c.body.mass[i] * acceleration_.dot(at(c.x, i));
+            sum -= c.body.mass[i] * acceleration_.dot(at(c.x, i) - c.datum);
         return sum;
     }
     void add_forces(const Configuration& c, Forces out) const override

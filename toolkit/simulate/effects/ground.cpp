@@ -10,7 +10,7 @@
 namespace cinch {
 namespace {
 
-constexpr double slow_m_per_s = 1e-3;
+constexpr double slow = 5e-4; // see Ground
 
 // What touches the ground: the vertices of the surface, or the nodes of a body that has none.
 class GroundContact : public Effect {
@@ -21,21 +21,23 @@ public:
     double energy(const Configuration& given) const override
     {
         const Configuration c = seen(given);
+        const Vec3 way = way_from(c);
         double sum = 0;
         each_contact(c, [&](std::size_t k, const Vec3& p, double depth) {
             sum += 0.5 * stiffness(c) * depth * depth;
             if (const double f = drag(k); f > 0)
-                sum += 0.5 * f * slip(p, k).squaredNorm();
+                sum += 0.5 * f * slip(p, k, way).squaredNorm();
         });
         return sum;
     }
     void add_forces(const Configuration& given, Forces out) const override
     {
         const Configuration c = seen(given);
+        const Vec3 way = way_from(c);
         each_contact(c, [&](std::size_t k, const Vec3& p, double depth) {
             Vec3 f = stiffness(c) * depth * ground_.normal;
             if (const double d = drag(k); d > 0)
-                f -= d * slip(p, k);
+                f -= d * slip(p, k, way);
             add_point_force(c, k, f, out);
         });
     }
@@ -117,7 +119,7 @@ public:
         return longest;
     }
     /// Friction: a drag μ N / ‖slip of the last step‖ on the slip of this one, by which it reaches Coulomb's force where things slide
-    /// steadily and holds where they rest: below a speed of 1 mm/s.
+    /// steadily and holds where they rest: below a slow speed.
     void remember(const Configuration& given, double dt_s) override
     {
         if (ground_.friction == 0)
@@ -125,46 +127,65 @@ public:
         const Configuration c = seen(given);
         const std::size_t count = points_of(c);
         std::vector<double> next(4 * count, 0);
+        double held = 0; // N
         interval_s_ = dt_s;
         for (std::size_t k = 0; k < count; ++k) {
             const Vec3 p = point(c, k);
             std::copy_n(p.data(), 3, next.data() + 4 * k);
-            const double depth = ground_.normal.dot(ground_.point - p);
-            if (depth > 0 && !before_.empty()) {
-                const double size = std::max(slip(p, k).norm(), slow_m_per_s * dt_s);
-                next[4 * k + 3] = ground_.friction * stiffness(c) * depth / size;
-            }
+            next[4 * k + 3] = std::max(0.0, depth(c, p));
+            held += stiffness(c) * next[4 * k + 3];
         }
+        double mass = 0, volume = 0;
+        for (std::size_t i = 0; i < c.body.size(); ++i) {
+            mass += c.body.mass[i];
+            volume += c.body.volume[i];
+        }
+        const double slow_m_per_s = slow * std::sqrt(held / mass * std::cbrt(volume));
+        const Vec3 way = way_from(c);
+        for (std::size_t k = 0; k < count; ++k)
+            if (double& drag = next[4 * k + 3]; drag > 0)
+                drag = before_.empty() ? 0 : ground_.friction * stiffness(c) * drag / std::max(slip(Eigen::Map<const Vec3>(next.data() + 4 * k), k, way).norm(), slow_m_per_s * dt_s);
         before_ = std::move(next);
+        reference_ = c.reference;
     }
     void save(std::ostream& out) const override
     {
         write_list(out, before_);
+        reference_.save(out);
         write_raw<double>(out, {&interval_s_, 1});
     }
     void restore(std::istream& in) override
     {
         read_list(in, before_);
+        reference_.restore(in);
         read_raw<double>(in, {&interval_s_, 1});
     }
 
 private:
-    Configuration seen(const Configuration& c) const { return {c.body, ground_.at_nodes ? nullptr : c.surface, c.x, c.gradient, c.deformation, c.plastic_inverse, c.time_s}; }
+    Configuration seen(const Configuration& given) const
+    {
+        Configuration c = given;
+        if (ground_.at_nodes)
+            c.surface = nullptr;
+        return c;
+    }
+    double depth(const Configuration& c, const Vec3& p) const { return ground_.normal.dot(c.reference.relative(ground_.point) - p); }
+    Vec3 way_from(const Configuration& c) const { return reference_.way_to(c.reference); } ///< from what `before_` refers to
     // What is below the plane, and what still rubs against it: depth ≥ 0.
     template <class Visit> void each_contact(const Configuration& c, const Visit& visit) const
     {
         const std::size_t count = points_of(c);
         for (std::size_t k = 0; k < count; ++k) {
             const Vec3 p = point(c, k);
-            if (const double depth = ground_.normal.dot(ground_.point - p); depth > 0 || drag(k) > 0)
-                visit(k, p, std::max(depth, 0.0));
+            if (const double below = depth(c, p); below > 0 || drag(k) > 0)
+                visit(k, p, std::max(below, 0.0));
         }
     }
     double stiffness(const Configuration& c) const { return ground_.stiffness / static_cast<double>(points_of(c)); }
     double drag(std::size_t k) const { return before_.empty() ? 0 : before_[4 * k + 3]; }
-    Vec3 slip(const Vec3& p, std::size_t k) const
+    Vec3 slip(const Vec3& p, std::size_t k, const Vec3& way) const
     {
-        const Vec3 d = p - Eigen::Map<const Vec3>(before_.data() + 4 * k);
+        const Vec3 d = (p - Eigen::Map<const Vec3>(before_.data() + 4 * k)) + way;
         return d - ground_.normal * ground_.normal.dot(d);
     }
 
@@ -176,6 +197,7 @@ private:
     std::vector<Touch> touching_; ///< in the configuration of prepare_product
     double interval_s_ = 0;
     std::vector<double> before_; ///< per point its place when the step began, and its drag, N/m
+    Reference reference_;        ///< from whose origin those places are seen
 };
 
 } // namespace

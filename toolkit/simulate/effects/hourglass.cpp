@@ -10,6 +10,7 @@ constexpr double rounding_only = 1e-12;
 
 // With k_i = α E v_i / Σ_j w_ij ‖x_ij‖² the force on neighbour j is −k_i w_ij (X_j − X_i − G_i x_ij). As w_ij x_ij = M_i d_ij, M_i the
 // moments Σ_j w_ij x_ij x_ijᵀ, that is a spring k_i to the neighbour and a stress k_i G_i M_i, both carried with all other stresses.
+// Of the reference, an affine map of the rest shape, nothing is left in either: displacements stand for positions, D_i for G_i.
 class Hourglass : public Effect {
 public:
     Hourglass(const MeshlessBody& body, double alpha, double young)
@@ -46,11 +47,11 @@ public:
     bool couples_nodes() const override { return true; }
     double energy(const Configuration& c) const override
     {
-        double sum = residual_energy(lists_of(c.body), offset_, spring_, c.x, c.gradient);
-        each_flat_residual(c.body, c.x, [&](const Flat&, std::size_t, const Vec3& r, const Vec3& t) { sum += 0.5 * r.dot(t); });
+        double sum = residual_energy(lists_of(c.body), offset_, spring_, c.u, c.gradient);
+        each_flat_residual(c.body, c.u, [&](const Flat&, std::size_t, const Vec3& r, const Vec3& t) { sum += 0.5 * r.dot(t); });
         return sum;
     }
-    void add_forces(const Configuration& c, Forces out) const override { run(c.body, c.x, c.gradient, out); }
+    void add_forces(const Configuration& c, Forces out) const override { run(c.body, c.u, c.gradient, out); }
     void add_product(const Configuration& c, const Field& dx, const MatrixField& dj, Forces out) const override { run(c.body, dx, dj, out); }
     void add_diagonal(const Configuration&, std::vector<Mat3>& block) const override
     {

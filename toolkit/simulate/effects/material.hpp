@@ -24,6 +24,10 @@ inline Mat3 cofactor(const Mat3& f)
     return c;
 }
 
+/// det F − 1 and cof F − I at F = I + H, without the difference: errors are relative to H.
+inline double volume_change(const Mat3& h) { return h.trace() + cofactor(h).trace() + h.determinant(); }
+inline Mat3 cofactor_change(const Mat3& h) { return h.trace() * Mat3::Identity() - h.transpose() + cofactor(h); }
+
 /// Adds s ∂ cof F / ∂F, columns stacked: d(f₂×f₃) = df₂×f₃ + f₂×df₃ and so on.
 inline void add_cofactor_derivative(const Mat3& f, double s, Mat9& h)
 {
@@ -43,8 +47,8 @@ inline void add_cofactor_derivative(const Mat3& f, double s, Mat9& h)
 
 inline Eigen::Matrix<double, 9, 1> stacked(const Mat3& m) { return Eigen::Map<const Eigen::Matrix<double, 9, 1>>(m.data()); }
 
-/// ½ (FᵀF − I), Green's strain.
-inline Mat3 green_strain(const Mat3& f) { return 0.5 * (f.transpose() * f - Mat3::Identity()); }
+/// Green's strain ½ (FᵀF − I) at F = I + H: ½ (H + Hᵀ + HᵀH).
+inline Mat3 green_strain(const Mat3& h) { return 0.5 * (h + h.transpose() + h.transpose() * h); }
 
 /// Of a stress P = F S with S = a tr(E) I + 2 b E, E the strain up to a constant: adds ∂P/∂F, given S.
 inline void add_second_piola_derivative(const Mat3& f, const Mat3& s, double a, double b, Mat9& h)

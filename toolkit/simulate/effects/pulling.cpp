@@ -28,7 +28,7 @@ public:
         const Vec3 f = now(c.time_s);
         double sum = 0;
         for (std::size_t k = 0; k < share_.size(); ++k)
-            sum -= share_[k] * f.dot(at(c.x, pull_.nodes[k]));
+            sum -= share_[k] * f.dot(at(c.x, pull_.nodes[k]) - c.datum);
         return sum;
     }
     void add_forces(const Configuration& c, Forces out) const override
@@ -57,13 +57,13 @@ public:
     {
         double sum = 0;
         for (std::size_t k = 0; k < share_.size(); ++k)
-            sum += 0.5 * pull_.stiffness * share_[k] * (at(c.x, pull_.nodes[k]) - pull_.target(k, c.time_s)).squaredNorm();
+            sum += 0.5 * pull_.stiffness * share_[k] * way(c, k).squaredNorm();
         return sum;
     }
     void add_forces(const Configuration& c, Forces out) const override
     {
         for (std::size_t k = 0; k < share_.size(); ++k)
-            at(out.force, pull_.nodes[k]) -= pull_.stiffness * share_[k] * (at(c.x, pull_.nodes[k]) - pull_.target(k, c.time_s));
+            at(out.force, pull_.nodes[k]) -= pull_.stiffness * share_[k] * way(c, k);
     }
     void add_curvature(const Configuration&, Curvature out) const override
     {
@@ -72,6 +72,8 @@ public:
     }
 
 private:
+    Vec3 way(const Configuration& c, std::size_t k) const { return at(c.x, pull_.nodes[k]) - (pull_.target(k, c.time_s) + c.reference.relative(pull_.origin)); }
+
     PullingTarget pull_;
     std::vector<double> share_;
 };

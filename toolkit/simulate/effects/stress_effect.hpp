@@ -6,7 +6,8 @@
 namespace cinch {
 
 /// An effect whose energy is a density of the deformation of every node: Σ v_i Ψ(J_i), or Σ v_i Ψ(J_i F_p⁻¹) where `Law` feels
-/// plasticity. Law has density(i, F), add_stress(i, F, P) and add_curvature(i, F, ∂P/∂F), in Pa.
+/// plasticity. Law has density(i, H), add_stress(i, H, P) and add_curvature(i, F, ∂P/∂F), in Pa, at F = I + H; the first two with errors
+/// relative to H, and P as the reference is turned.
 template <class Law> class StressEffect : public Effect {
 public:
     StressEffect(const char* name, Law law) : Effect(name), law_(std::move(law)) {}
@@ -17,7 +18,7 @@ public:
         double sum = 0;
         for (std::size_t i = 0; i < c.body.size(); ++i)
             if (c.body.rank[i] > 0)
-                sum += c.body.volume[i] * law_.density(i, elastic(c, i));
+                sum += c.body.volume[i] * law_.density(i, strain(c, i));
         return sum;
     }
     void add_forces(const Configuration& c, Forces out) const override
@@ -29,10 +30,10 @@ public:
             if (c.body.rank[i] == 0)
                 continue;
             Mat3 p = Mat3::Zero();
-            law_.add_stress(i, elastic(c, i), p);
+            law_.add_stress(i, strain(c, i), p);
             if (plastic(c))
                 p *= c.plastic_inverse[i].transpose();
-            matrix_at(out.stress, i) -= c.body.volume[i] * p;
+            matrix_at(out.stress, i) -= c.body.volume[i] * (c.reference.rotation * p);
         }
     }
     void add_curvature(const Configuration& c, Curvature out) const override
@@ -84,6 +85,12 @@ private:
     {
         const Mat3 j = matrix_at(c.deformation, i);
         return plastic(c) ? Mat3(j * c.plastic_inverse[i]) : j;
+    }
+
+    static Mat3 strain(const Configuration& c, std::size_t i) // Rᵀ F − I
+    {
+        const Mat3 h = matrix_at(c.strain, i);
+        return plastic(c) ? Mat3(h * c.plastic_inverse[i] + (c.plastic_inverse[i] - Mat3::Identity())) : h;
     }
 
     Law law_;

@@ -17,18 +17,18 @@ struct StVenantKirchhoff {
         lambda = factor * l.lambda;
         mu = factor * l.mu;
     }
-    Mat3 second_piola(const Mat3& f) const
+    Mat3 second_piola(const Mat3& h) const
     {
-        const Mat3 e = green_strain(f);
+        const Mat3 e = green_strain(h);
         return 2 * mu * e + lambda * e.trace() * Mat3::Identity();
     }
-    double density(std::size_t, const Mat3& f) const
+    double density(std::size_t, const Mat3& h) const
     {
-        const Mat3 e = green_strain(f);
+        const Mat3 e = green_strain(h);
         return mu * e.squaredNorm() + 0.5 * lambda * e.trace() * e.trace();
     }
-    void add_stress(std::size_t, const Mat3& f, Mat3& p) const { p += f * second_piola(f); }
-    void add_curvature(std::size_t, const Mat3& f, Mat9& h) const { add_second_piola_derivative(f, second_piola(f), lambda, mu, h); }
+    void add_stress(std::size_t, const Mat3& h, Mat3& p) const { p += (Mat3::Identity() + h) * second_piola(h); }
+    void add_curvature(std::size_t, const Mat3& f, Mat9& h) const { add_second_piola_derivative(f, second_piola(f - Mat3::Identity()), lambda, mu, h); }
 };
 
 } // namespace

@@ -16,14 +16,14 @@ struct KelvinVoigt {
     double interval_s = 0;
 
     double rate() const { return interval_s > 0 ? viscosity / interval_s : 0; }
-    Mat3 change(std::size_t i, const Mat3& f) const { return before.empty() ? Mat3::Zero() : Mat3(green_strain(f) - Eigen::Map<const Mat3>(before.data() + 9 * i)); }
+    Mat3 change(std::size_t i, const Mat3& h) const { return before.empty() ? Mat3::Zero() : Mat3(green_strain(h) - Eigen::Map<const Mat3>(before.data() + 9 * i)); }
 
-    double density(std::size_t i, const Mat3& f) const { return 0.5 * rate() * change(i, f).squaredNorm(); }
-    void add_stress(std::size_t i, const Mat3& f, Mat3& p) const { p += rate() * f * change(i, f); }
+    double density(std::size_t i, const Mat3& h) const { return 0.5 * rate() * change(i, h).squaredNorm(); }
+    void add_stress(std::size_t i, const Mat3& h, Mat3& p) const { p += rate() * (Mat3::Identity() + h) * change(i, h); }
     void add_curvature(std::size_t i, const Mat3& f, Mat9& h) const
     {
         if (!before.empty())
-            add_second_piola_derivative(f, rate() * change(i, f), 0, 0.5 * rate(), h);
+            add_second_piola_derivative(f, rate() * change(i, f - Mat3::Identity()), 0, 0.5 * rate(), h);
     }
     void add_damping(const Mat3& f, Mat9& h) const { add_second_piola_derivative(f, Mat3::Zero(), 0, 0.5 * viscosity, h); }
     void remember(const Configuration& c, double dt_s)
@@ -31,7 +31,7 @@ struct KelvinVoigt {
         before.resize(9 * c.body.size());
         interval_s = dt_s;
         for (std::size_t i = 0; i < c.body.size(); ++i)
-            Eigen::Map<Mat3>(before.data() + 9 * i) = green_strain(matrix_at(c.deformation, i));
+            Eigen::Map<Mat3>(before.data() + 9 * i) = green_strain(matrix_at(c.strain, i));
     }
     void save(std::ostream& out) const
     {
@@ -58,14 +58,12 @@ public:
     double energy(const Configuration& c) const override
     {
         double sum = 0;
-        for (std::size_t i = 0; i < before_.size() / 4; ++i)
-            sum += 0.5 * weight(c, i) * (at(c.x, i) - at(before_, i)).squaredNorm();
+        each_change(c, [&](std::size_t, double weight, const Vec3& change) { sum += 0.5 * weight * change.squaredNorm(); });
         return sum;
     }
     void add_forces(const Configuration& c, Forces out) const override
     {
-        for (std::size_t i = 0; i < before_.size() / 4; ++i)
-            at(out.force, i) -= weight(c, i) * (at(c.x, i) - at(before_, i));
+        each_change(c, [&](std::size_t i, double weight, const Vec3& change) { at(out.force, i) -= weight * change; });
     }
     void add_curvature(const Configuration& c, Curvature out) const override
     {
@@ -74,25 +72,38 @@ public:
     }
     void remember(const Configuration& c, double dt_s) override
     {
-        before_ = c.x;
+        before_ = c.u;
+        reference_ = c.reference;
         interval_s_ = dt_s;
     }
     void save(std::ostream& out) const override
     {
         write_list(out, before_);
+        reference_.save(out);
         write_raw<double>(out, {&interval_s_, 1});
     }
     void restore(std::istream& in) override
     {
         read_list(in, before_);
+        reference_.restore(in);
         read_raw<double>(in, {&interval_s_, 1});
     }
 
 private:
     double weight(const Configuration& c, std::size_t i) const { return interval_s_ > 0 ? rate_ * c.body.mass[i] / interval_s_ : 0; }
 
+    // What every node has moved by since, whatever the two displacements refer to.
+    template <class Visit> void each_change(const Configuration& c, const Visit& visit) const
+    {
+        const Vec3 way = reference_.way_to(c.reference);
+        const Mat3 turn = c.reference.rotation - reference_.rotation;
+        for (std::size_t i = 0; i < before_.size() / 4; ++i)
+            visit(i, weight(c, i), Vec3((at(c.u, i) - at(before_, i)) + (turn * (c.body.rest[i] - c.reference.centre) + way)));
+    }
+
     double rate_, interval_s_ = 0;
-    Field before_;
+    Field before_; ///< displacements
+    Reference reference_; ///< from this
 };
 
 } // namespace

@@ -10,12 +10,12 @@ struct VolumePreservation {
     static constexpr bool feels_plasticity = false; // plastic flow keeps the volume
     double stiffness;
 
-    double density(std::size_t, const Mat3& f) const
+    double density(std::size_t, const Mat3& h) const
     {
-        const double d = f.determinant() - 1;
+        const double d = volume_change(h);
         return 0.5 * stiffness * d * d;
     }
-    void add_stress(std::size_t, const Mat3& f, Mat3& p) const { p += stiffness * (f.determinant() - 1) * cofactor(f); }
+    void add_stress(std::size_t, const Mat3& h, Mat3& p) const { p += stiffness * volume_change(h) * (Mat3::Identity() + cofactor_change(h)); }
     void add_curvature(std::size_t, const Mat3& f, Mat9& h) const
     {
         const auto c = stacked(cofactor(f));

@@ -13,38 +13,55 @@ HWY_BEFORE_NAMESPACE();
 namespace cinch::HWY_NAMESPACE {
 
 // Four nodes at a time: a Quad holds one entry of their matrices.
-void add_neo_hookean_stress(double mu, double lambda, double alpha, const double* volume, std::size_t count, const double* deformation, double* stress)
+void add_neo_hookean_stress(double mu, double lambda, const double* volume, std::size_t count, const double* rotation, const double* strain, double* stress)
 {
-    const Quad one = Quad::all(1);
+    const Quad four = Quad::all(4);
+    Quad turn[9];
+    for (std::size_t k = 0; k < 9; ++k)
+        turn[k] = Quad::all(rotation[k]);
     for (std::size_t first = 0; first < count; first += 4) {
         const std::size_t lanes = count - first < 4 ? count - first : 4;
         HWY_ALIGN double volumes[4] = {};
         for (std::size_t lane = 0; lane < lanes; ++lane)
             volumes[lane] = volume[first + lane];
-        Quad f[9], cofactor[9];
+        Quad h[9], cofactor[9];
         for (std::size_t c = 0; c < 3; ++c) {
             Quad node[4];
             for (std::size_t lane = 0; lane < 4; ++lane)
-                node[lane] = lane < lanes ? Quad::load(deformation + 12 * (first + lane) + 4 * c) : Quad::zero();
+                node[lane] = lane < lanes ? Quad::load(strain + 12 * (first + lane) + 4 * c) : Quad::zero();
             transpose(node);
             for (std::size_t r = 0; r < 3; ++r)
-                f[3 * c + r] = node[r];
+                h[3 * c + r] = node[r];
         }
-        Quad square = f[0] * f[0];
+        const Quad trace = (h[0] + h[4]) + h[8];
+        Quad square = h[0] * h[0];
         for (std::size_t k = 1; k < 9; ++k)
-            square = square + f[k] * f[k];
+            square = square + h[k] * h[k];
         for (std::size_t c = 0; c < 3; ++c) { // column c is the cross product of the two that follow
-            const Quad *a = f + 3 * ((c + 1) % 3), *b = f + 3 * ((c + 2) % 3);
+            const Quad *a = h + 3 * ((c + 1) % 3), *b = h + 3 * ((c + 2) % 3);
             for (std::size_t r = 0; r < 3; ++r)
                 cofactor[3 * c + r] = a[(r + 1) % 3] * b[(r + 2) % 3] - a[(r + 2) % 3] * b[(r + 1) % 3];
         }
-        const Quad determinant = (f[0] * cofactor[0] + f[1] * cofactor[1]) + f[2] * cofactor[2];
+        const Quad determinant = (h[0] * cofactor[0] + h[1] * cofactor[1]) + h[2] * cofactor[2];
+        const Quad j = (trace + ((cofactor[0] + cofactor[4]) + cofactor[8])) + determinant;
+        const Quad delta = (trace + trace) + square;
         const Quad v = Quad::load(volumes);
-        const Quad along = v * Quad::all(mu) * (one - one / (square + one)), across = v * Quad::all(lambda) * (determinant - Quad::all(alpha));
+        const Quad shear = v * Quad::all(0.75 * mu), along = v * (Quad::all(mu) * delta / (four * (four + delta))), across = v * (Quad::all(lambda) * j);
+        Quad p[9];
+        for (std::size_t c = 0; c < 3; ++c)
+            for (std::size_t r = 0; r < 3; ++r) {
+                const std::size_t k = 3 * c + r;
+                Quad change = cofactor[k] - h[3 * r + c]; // of the cofactor: tr H I − Hᵀ + cof H
+                if (r == c)
+                    change = change + trace;
+                p[k] = shear * (h[k] - change) + along * h[k] + across * change;
+                if (r == c)
+                    p[k] = p[k] + (along + across);
+            }
         for (std::size_t c = 0; c < 3; ++c) {
             Quad node[4] = {Quad::zero(), Quad::zero(), Quad::zero(), Quad::zero()};
             for (std::size_t r = 0; r < 3; ++r)
-                node[r] = along * f[3 * c + r] + across * cofactor[3 * c + r];
+                node[r] = multiply_add(turn[6 + r], p[3 * c + 2], multiply_add(turn[3 + r], p[3 * c + 1], turn[r] * p[3 * c]));
             transpose(node);
             for (std::size_t lane = 0; lane < lanes; ++lane) {
                 double* column = stress + 12 * (first + lane) + 4 * c;
@@ -61,10 +78,9 @@ HWY_AFTER_NAMESPACE();
 namespace cinch {
 HWY_EXPORT(add_neo_hookean_stress);
 
-void add_neo_hookean_stress(double mu, double lambda, double alpha, std::span<const double> volume, const MatrixField& deformation,
-                            MatrixField& stress) noexcept
+void add_neo_hookean_stress(double mu, double lambda, std::span<const double> volume, const Mat3& rotation, const MatrixField& strain, MatrixField& stress) noexcept
 {
-    HWY_DYNAMIC_DISPATCH(add_neo_hookean_stress)(mu, lambda, alpha, volume.data(), volume.size(), deformation.data(), stress.data());
+    HWY_DYNAMIC_DISPATCH(add_neo_hookean_stress)(mu, lambda, volume.data(), volume.size(), rotation.data(), strain.data(), stress.data());
 }
 
 } // namespace cinch

@@ -1,0 +1,339 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A motion does not depend on the units in which a scene is written, nor on where it is, nor on how stiff what moves freely is.
+#include <catch2/catch.hpp>
+
+#include <Eigen/Geometry>
+#include <nlohmann/json.hpp>
+
+#include "tests/simulate/bodies.hpp"
+#include "toolkit/simulate/simulation.hpp"
+
+using namespace cinch;
+using test::lattice_body;
+using json = nlohmann::json;
+
+namespace {
+
+struct Units {
+    double length = 1, time = 1, mass = 1;
+};
+
+json scaled(const json& value, double factor)
+{
+    if (value.is_number())
+        return value.get<double>() * factor;
+    json out = json::array();
+    for (const json& part : value)
+        out.push_back(scaled(part, factor));
+    return out;
+}
+
+// Multiplies the fields of an object by the factors of their dimensions.
+void scale(json& object, const std::vector<std::pair<const char*, double>>& factors)
+{
+    for (const auto& [name, factor] : factors)
+        if (object.contains(name))
+            object[name] = scaled(object[name], factor);
+}
+
+json in_units(json scene, const Units& u)
+{
+    const double l = u.length, t = u.time, m = u.mass, pressure = m / l / t / t;
+    scale(scene, {{"duration", t}, {"frame", t}});
+    scale(scene["integrator"], {{"step", t}});
+    for (json& body : scene["bodies"])
+        scale(body, {{"box", l}, {"size", l}, {"thickness", l}, {"position", l}, {"velocity", l / t}, {"spin", 1 / t}, {"density", m / l / l / l}});
+    for (json& effect : scene["effects"]) {
+        const std::string name = effect["effect"];
+        const double stiffness = name == "volume" ? pressure : name == "contact" ? pressure / l : m / t / t;
+        scale(effect, {{"acceleration", l / t / t}, {"young", pressure}, {"viscosity", pressure * t}, {"rate", 1 / t}, {"stiffness", stiffness}, {"point", l},
+                       {"force", m * l / t / t}, {"period", t}, {"start", t}, {"end", t}, {"ramp", t}, {"offset", l}, {"creep", 1 / t}, {"centre", l}, {"velocity", l / t}});
+        if (effect.contains("nodes"))
+            scale(effect["nodes"], {{"box", l}});
+    }
+    return scene;
+}
+
+json box_body(const char* name, const json& extra)
+{
+    json body = {{"name", name}, {"surface", "box"}, {"box", {0.75, 0.5, 0.5}}, {"cells", {6, 4, 4}}, {"lattice", {4, 3, 3}}, {"density", 1000}};
+    body.update(extra);
+    return body;
+}
+
+// A pair that falls on the ground, slides and meets; a bar that is held, pulled and flows; a sheet in a spin; a single node.
+json everything(const std::string& method)
+{
+    json integrator = {{"method", method}, {"step", 0.015625}};
+    if (method == "implicit")
+        integrator["tolerance"] = 1e-9; // what may differ is what rounding makes of it
+    return {{"duration", 0.5},
+            {"frame", 0.03125},
+            {"integrator", integrator},
+            {"bodies",
+             {box_body("low", {{"position", {0, 0, 0.3125}}, {"velocity", {0.5, 0, -1}}}),
+              box_body("high", {{"position", {0.125, 0.0625, 0.9375}}, {"velocity", {0, 0, -2}}, {"spin", {0.5, 1, 0}}, {"rotation", {{"axis", {1, 2, 3}}, {"degrees", 30}}}}),
+              box_body("bar", {{"position", {4, 0, 4}}}),
+              {{"name", "sheet"}, {"surface", "sheet"}, {"box", {1, 1, 0}}, {"cells", {4, 4, 1}}, {"lattice", {5, 5, 1}}, {"thickness", 0.03125}, {"density", 1000}, {"position", {0, 8, 4}}, {"spin", {1, 2, 3}}},
+              {{"name", "one"}, {"surface", "box"}, {"box", {0.5, 0.5, 0.5}}, {"cells", {1, 1, 1}}, {"lattice", {1, 1, 1}}, {"density", 1000}, {"position", {-8, 0, 0.25}}, {"velocity", {1, 0, 0}}}}},
+            {"effects",
+             {{{"effect", "gravity"}, {"acceleration", {0, 0, -9.81}}},
+              {{"effect", "elastic"}, {"young", 1e5}},
+              {{"effect", "hourglass"}},
+              {{"effect", "volume"}, {"stiffness", 2e4}},
+              {{"effect", "viscosity"}, {"viscosity", 100}},
+              {{"effect", "damping"}, {"rate", 0.5}},
+              {{"effect", "ground"}, {"stiffness", 1e6}, {"friction", 0.5}, {"point", {0, 0, 0}}},
+              {{"effect", "contact"}, {"stiffness", 3e6}, {"bodies", {"low", "high"}}},
+              {{"effect", "plasticity"}, {"bodies", {"bar"}}, {"yield", 0.02}, {"creep", 20}},
+              {{"effect", "pinned"}, {"bodies", {"bar"}}, {"nodes", {{"box", {{-1, -1, -1}, {-0.25, 1, 1}}}}}},
+              {{"effect", "pulling"}, {"bodies", {"bar"}}, {"nodes", {{"box", {{0.25, -1, -1}, {1, 1, 1}}}}}, {"force", {900, 0, 0}}, {"period", 1}},
+              {{"effect", "pulling"}, {"bodies", {"sheet"}}, {"nodes", {{"box", {{-1, -1, -1}, {-0.25, 1, 1}}}}}, {"stiffness", 500}, {"offset", {0, 0, 0.5}}, {"ramp", 0.25}}}}};
+}
+
+struct Motion {
+    std::vector<Field> positions; ///< of every body after every frame
+    std::string failure;
+};
+
+Motion run(const json& scene)
+{
+    Simulation s(parse_scene(scene.dump(), "scene", "."), "scene");
+    Motion out;
+    while (s.frame() + 1 < s.frame_count() && out.failure.empty()) {
+        for (const StepReport& r : s.advance())
+            if (!r.failure.empty())
+                out.failure = r.failure;
+        for (const Simulation::Body& body : s.bodies())
+            out.positions.push_back(body.simulation.positions());
+    }
+    return out;
+}
+
+double difference(const Motion& a, const Motion& b, double length)
+{
+    double most = 0, size = 0;
+    for (std::size_t k = 0; k < a.positions.size(); ++k) {
+        most = std::max(most, (whole(a.positions[k]) - whole(b.positions[k]) / length).lpNorm<Eigen::Infinity>());
+        size = std::max(size, whole(a.positions[k]).lpNorm<Eigen::Infinity>());
+    }
+    return most / size;
+}
+
+Integration steps(double step)
+{
+    Integration i;
+    i.step_s = step;
+    return i;
+}
+
+BodySimulation elastic(const MeshlessBody& body, double young)
+{
+    BodySimulation s(body, {});
+    s.add(make_neo_hookean(young, 0.3));
+    s.add(make_hourglass(body, 1, young));
+    return s;
+}
+
+Field velocities(const MeshlessBody& body, const Vec3& velocity, const Vec3& spin = Vec3::Zero())
+{
+    Field v(4 * body.size(), 0);
+    for (std::size_t i = 0; i < body.size(); ++i)
+        at(v, i) = velocity + spin.cross(body.rest[i]);
+    return v;
+}
+
+Vec3 centre(const BodySimulation& s)
+{
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t i = 0; i < s.body().size(); ++i)
+        sum += at(s.positions(), i) / static_cast<double>(s.body().size());
+    return sum;
+}
+
+} // namespace
+
+TEST_CASE("scenes in units that are powers of two give the same bits, whatever acts, by both integrators")
+{
+    for (const std::string method : {"implicit", "explicit"}) {
+        const json scene = everything(method);
+        const Motion one = run(scene);
+        REQUIRE(one.failure == "");
+        const double big = 0x1p30, small = 0x1p-30;
+        for (const Units& u : {Units{big, 1, 1}, Units{small, 1, 1}, Units{1, big, 1}, Units{1, small, 1}, Units{1, 1, big}, Units{1, 1, small}, Units{small, big, small}, Units{big, small, small}}) {
+            INFO(method << ": length " << u.length << ", time " << u.time << ", mass " << u.mass);
+            const Motion other = run(in_units(scene, u));
+            REQUIRE(other.failure == "");
+            CHECK(difference(one, other, u.length) == 0);
+        }
+    }
+}
+
+TEST_CASE("scenes scaled by 1e-9 to 1e9 in length, time and mass give the same motion")
+{
+    for (const std::string method : {"implicit", "explicit"}) {
+        const json scene = everything(method);
+        const Motion one = run(scene);
+        REQUIRE(one.failure == "");
+        for (const Units& u : {Units{1e9, 1, 1}, Units{1e-9, 1, 1}, Units{1, 1e9, 1}, Units{1, 1e-9, 1}, Units{1, 1, 1e9}, Units{1, 1, 1e-9}, Units{1e-9, 1e-9, 1e-9}, Units{1e9, 1e9, 1e9},
+                               Units{1e-9, 1e9, 1e-9}, Units{1e3, 1e-5, 1e7}}) {
+            INFO(method << ": length " << u.length << ", time " << u.time << ", mass " << u.mass);
+            const Motion other = run(in_units(scene, u));
+            REQUIRE(other.failure == "");
+            CHECK(difference(one, other, u.length) < 1e-9);
+        }
+    }
+}
+
+TEST_CASE("gravity moves what it acts on, however weak it is and however stiff the body")
+{
+    const MeshlessBody body = lattice_body({1, 0.6, 0.6}, 5, 3, 3, {}, 0.2);
+    for (const double young : {1e4, 1e12, 1e16, 1e18})
+        for (const double g : {1e-12, 1e-5, 9.81, 1e6}) {
+            CAPTURE(young, g);
+            BodySimulation s = elastic(body, young);
+            s.add(make_gravity({0, 0, -g}));
+            const Vec3 before = centre(s);
+            const StepReport r = s.advance(0.5, steps(1.0 / 60));
+            REQUIRE(r.failure == "");
+            CHECK((r.at_rounding || r.residual / g <= 1.01e-5));
+            CHECK((before - centre(s))[2] == Approx(g * 30 * 31 / 2 / 3600).epsilon(1e-4)); // implicit Euler's parabola
+        }
+}
+
+TEST_CASE("a body spins as it began, however small, stiff or flat it is")
+{
+    const double pi = std::acos(-1.0);
+    for (const double size : {1e-6, 1.0})
+        for (const double young : {size < 1 ? 1e-3 : 1e5, size < 1 ? 1e5 : 1e12, size < 1 ? 1e7 : 1e16})
+            for (const int layers : {3, 1}) {
+                CAPTURE(size, young, layers);
+                const MeshlessBody body = lattice_body({size, 0.6 * size, layers == 1 ? 0 : 0.6 * size}, 5, 3, layers);
+                BodySimulation s = elastic(body, young);
+                const Vec3 spin(0, 0, 2 * pi);
+                s.place(Vec3::Zero(), Mat3::Identity(), velocities(body, Vec3::Zero(), spin));
+                const double start = s.kinetic();
+                std::string failure;
+                for (int frame = 0; frame < 15 && failure.empty(); ++frame)
+                    failure = s.advance(1.0 / 60, steps(1.0 / 480)).failure;
+                REQUIRE(failure == "");
+                CHECK(s.kinetic() > 0.8 * start); // implicit Euler takes a share of ω Δt with every radian
+                const Vec3 was = body.rest[0].cwiseProduct(Vec3(1, 1, 0)), is = Vec3(at(s.positions(), 0)).cwiseProduct(Vec3(1, 1, 0));
+                CHECK(is.norm() / was.norm() == Approx(1).epsilon(0.02));
+                CHECK(std::abs(was.dot(is)) / was.squaredNorm() < 0.15); // a quarter of a turn
+            }
+}
+
+TEST_CASE("a body moves far away as it does here")
+{
+    const json here = {{"duration", 0.25},
+                       {"frame", 0.015625},
+                       {"integrator", {{"method", "implicit"}, {"tolerance", 1e-9}}},
+                       {"bodies",
+                        {box_body("low", {{"position", {0, 0, 0.3125}}, {"velocity", {0.5, 0, -1}}}),
+                         box_body("high", {{"position", {0.125, 0.0625, 0.9375}}, {"velocity", {0, 0, -2}}, {"rotation", {{"axis", {1, 2, 3}}, {"degrees", 30}}}}),
+                         box_body("bar", {{"position", {4, 0, 4}}})}},
+                       {"effects",
+                        {{{"effect", "gravity"}},
+                         {{"effect", "elastic"}, {"young", 1e5}},
+                         {{"effect", "hourglass"}},
+                         {{"effect", "damping"}, {"rate", 0.5}},
+                         {{"effect", "ground"}, {"stiffness", 1e6}, {"friction", 0.5}, {"point", {0, 0, 0}}},
+                         {{"effect", "contact"}, {"stiffness", 3e6}, {"bodies", {"low", "high"}}},
+                         {{"effect", "scripted"}, {"bodies", {"bar"}}, {"nodes", {{"box", {{-1, -1, -1}, {-0.25, 1, 1}}}}}, {"axis", {1, 0, 0}}, {"centre", {4, 0, 4}}, {"rate", 3}},
+                         {{"effect", "pulling"}, {"bodies", {"bar"}}, {"nodes", {{"box", {{0.25, -1, -1}, {1, 1, 1}}}}}, {"stiffness", 2000}, {"offset", {0, 0, 0.5}}}}}};
+    const Vec3 far(0x1p40, -0x1p40, 0x1p39); // about 1e12 m: doubles are 1e-4 m apart there
+    json there = here;
+    for (json& body : there["bodies"])
+        for (std::size_t r = 0; r < 3; ++r)
+            body["position"][r] = body["position"][r].get<double>() + far[static_cast<Eigen::Index>(r)];
+    for (json& effect : there["effects"])
+        for (const char* name : {"point", "centre"})
+            for (std::size_t r = 0; effect.contains(name) && r < 3; ++r)
+                effect[name][r] = effect[name][r].get<double>() + far[static_cast<Eigen::Index>(r)];
+    Simulation a(parse_scene(here.dump(), "here", "."), "here"), b(parse_scene(there.dump(), "there", "."), "there");
+    std::size_t pairs = 0;
+    while (a.frame() + 1 < a.frame_count()) {
+        for (Simulation* s : {&a, &b})
+            for (const StepReport& r : s->advance())
+                REQUIRE(r.failure == "");
+        pairs += a.contacts()[0]->pairs();
+    }
+    CHECK(pairs > 0);
+    for (std::size_t k = 0; k < a.bodies().size(); ++k) {
+        // Seen from either place; what frames and positions() give is in the world, and as coarse as that is there.
+        const auto near = a.bodies()[k].simulation.frame(Vec3::Zero()), away = b.bodies()[k].simulation.frame(far);
+        double off = 0;
+        for (std::size_t i = 0; i < near.size(); ++i)
+            for (int r = 0; r < 3; ++r)
+                for (int c = 0; c < 4; ++c)
+                    off = std::max(off, std::abs(near[i].m[r][c] - away[i].m[r][c]));
+        CAPTURE(a.bodies()[k].name);
+        CHECK(off < 1e-9);
+    }
+}
+
+TEST_CASE("what rounding leaves is a failure, or within the tolerance")
+{
+    // Ends that are turned by their places in the world, and steel a million times too stiff: a rounding of the places strains it by more
+    // than gravity does.
+    const MeshlessBody body = lattice_body({1, 0.3, 0.3}, 8, 3, 3);
+    for (const double young : {1e5, 1e8, 1e11, 1e14, 1e17, 1e20}) {
+        BodySimulation s = elastic(body, young);
+        s.add(make_gravity({0, 0, -9.81}));
+        std::vector<std::uint32_t> held;
+        std::vector<Vec3> places;
+        for (std::uint32_t i = 0; i < body.size(); ++i)
+            if (body.rest[i][0] < -0.3) {
+                held.push_back(i);
+                places.push_back(body.rest[i]);
+            }
+        Turning turning;
+        turning.axis = Vec3(1, 1, 0);
+        turning.rate = 3;
+        s.add(turning_pin(held, places, turning));
+        const Field x = s.positions();
+        CAPTURE(young);
+        StepReport r = s.advance(1.0 / 60, steps(1.0 / 60));
+        for (int frame = 1; frame < 10 && r.failure.empty(); ++frame)
+            r = s.advance(1.0 / 60, steps(1.0 / 60));
+        if (young <= 1e8)
+            CHECK(r.failure == "");
+        if (young >= 1e17) {
+            CHECK(r.failure.find("rounding: accelerations are off by ") == 0);
+            CHECK((s.positions() == x));
+        }
+        UNSCOPED_INFO(young << ": " << r.failure << " " << r.residual << " of " << r.acceleration << " " << r.at_rounding);
+        if (r.failure.empty() && !r.at_rounding)
+            CHECK(r.residual <= 1e-5 * r.acceleration);
+    }
+}
+
+TEST_CASE("a body at rest stays there, strained or not, also where nothing but rounding is left of its forces")
+{
+    const MeshlessBody solid = lattice_body({1, 0.3, 0.3}, 8, 3, 3), sheet = lattice_body({1, 1, 0}, 5, 5, 1), rope = lattice_body({1, 1e-9, 0}, 6, 1, 1);
+    const Mat3 turned = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+    for (const MeshlessBody* body : {&solid, &sheet, &rope})
+        for (const double young : {1e4, 1e9, 1e14}) {
+            CAPTURE(int(body->rank[0]), young);
+            BodySimulation s = elastic(*body, young);
+            const Field x = test::moved(*body, turned, {3, -2, 1}, 0, 1);
+            s.place(x, Field(x.size(), 0));
+            REQUIRE(s.advance(1, steps(1.0 / 60)).failure == "");
+            CHECK((whole(s.positions()) - whole(x)).norm() < 1e-12);
+        }
+    // Held twice as long as at rest, until it no longer rings: forces of 1e5 Pa that leave no acceleration.
+    BodySimulation s = elastic(solid, 1e5);
+    s.add(make_mass_damping(30));
+    std::vector<std::uint32_t> ends;
+    std::vector<Vec3> places;
+    for (std::uint32_t i = 0; i < solid.size(); ++i)
+        if (std::abs(solid.rest[i][0]) > 0.4) {
+            ends.push_back(i);
+            places.push_back(solid.rest[i].cwiseProduct(Vec3(2, 1, 1)));
+        }
+    s.add(fixed_pin(ends, places));
+    for (int frame = 0; frame < 300; ++frame)
+        REQUIRE(s.advance(1.0 / 30, steps(1.0 / 30)).failure == "");
+    CHECK(std::sqrt(2 * s.kinetic()) < 1e-9);
+}
