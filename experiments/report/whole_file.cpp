@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/report/whole_file.hpp"
 
-#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <climits>
@@ -10,9 +9,9 @@
 #include <random>
 #include <set>
 #include <utility>
-#include <vector>
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -27,23 +26,23 @@ constexpr std::size_t buffer_bytes = 1 << 16;
 
 std::string because(const std::string& what, int error) { return what + ": " + std::strerror(error) + (error == ENOSPC || error == EDQUOT ? "; the disk is full" : ""); }
 
-/// A file's identity: the same for all its names and links.
-struct Identity {
-    dev_t device;
-    ino_t inode;
-    auto operator<=>(const Identity&) const = default;
-};
-
-/// What this process reads and writes: nothing may be both, or written twice.
+/// What this process reads and writes, as absolute paths: nothing may be both, or written twice.
 struct Known {
     std::mutex mutex;
-    std::set<Identity> inputs;
+    std::set<std::string> inputs;
     std::set<std::string> targets; ///< of files that are being written, as target_of says
 };
 Known& known()
 {
     static Known all;
     return all;
+}
+
+/// Whether a path leads to this file, whatever its names and links.
+bool is_same(const std::string& path, const struct stat& file)
+{
+    struct stat there = {};
+    return stat(path.c_str(), &there) == 0 && there.st_dev == file.st_dev && there.st_ino == file.st_ino;
 }
 
 /// Names of partial files where a signal handler can read them. A slot is taken, written, then shown.
@@ -107,7 +106,7 @@ WholeFile::WholeFile(const fs::path& name) : name_(name.string())
     if (exists && S_ISDIR(there.st_mode))
         throw InputError::in_file(name_, "cannot be written: it is a folder");
     for (const int standard : {STDOUT_FILENO, STDERR_FILENO}) // its place is where this stream stands in the file
-        if (struct stat open = {}; exists && S_ISREG(there.st_mode) && fstat(standard, &open) == 0 && open.st_dev == there.st_dev && open.st_ino == there.st_ino) {
+        if (exists && S_ISREG(there.st_mode) && is_same(fmt::format("/dev/fd/{}", standard), there)) {
             if ((file_ = fcntl(standard, F_DUPFD_CLOEXEC, 0)) < 0)
                 fail(errno);
             return;
@@ -120,10 +119,11 @@ WholeFile::WholeFile(const fs::path& name) : name_(name.string())
     const fs::path target = target_of(name);
     {
         const std::lock_guard lock(known().mutex);
-        if (exists && known().inputs.contains({there.st_dev, there.st_ino}))
-            throw InputError::in_file(name_, "is an input of this command; the output needs another name");
-        for (const std::string& other : known().targets) // by identity too: hard links
-            if (struct stat is = {}; other == target || (exists && stat(other.c_str(), &is) == 0 && is.st_dev == there.st_dev && is.st_ino == there.st_ino))
+        for (const std::string& input : known().inputs)
+            if (exists && is_same(input, there))
+                throw InputError::in_file(name_, "is an input of this command; the output needs another name");
+        for (const std::string& other : known().targets)
+            if (other == target || (exists && is_same(other, there)))
                 throw InputError::in_file(name_, "is named for two outputs; each needs a name of its own");
     }
     if (exists && access(name.c_str(), W_OK) != 0)
@@ -228,9 +228,9 @@ void guard_input(const fs::path& file)
         return;
     const std::lock_guard lock(known().mutex);
     for (const std::string& target : known().targets)
-        if (struct stat there = {}; stat(target.c_str(), &there) == 0 && there.st_dev == is.st_dev && there.st_ino == is.st_ino)
+        if (is_same(target, is))
             throw InputError::in_file(target, "is an input of this command; the output needs another name");
-    known().inputs.insert({is.st_dev, is.st_ino});
+    known().inputs.insert(fs::absolute(file).string());
 }
 
 void remove_partial_files() noexcept
