@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <limits>
-#include <stdexcept>
 
 #include "exact/absolute.hpp"
+#include "exact/check_failed.hpp"
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/progress.hpp"
 #include "toolkit/collide/collider.hpp"
@@ -73,7 +73,7 @@ public:
         }
         const std::size_t deformed = tree.counts().leaves; // after a full update once more where their vertices are wanted too
         if (tree.counts().merged != merged_ || (tree.fully_refitted() ? deformed < leaves : deformed != leaves) || tree.counts().bounds != current - merged_ - leaves)
-            throw std::runtime_error("the lazy update's own counts differ from the BVs that are current");
+            throw CheckFailed("the lazy update's own counts differ from the BVs that are current");
         lazy.merged += merged_;
         lazy.from_vertices += leaves;
         lazy.by_methods += current - merged_ - leaves;
