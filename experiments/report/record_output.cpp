@@ -74,15 +74,15 @@ std::string interrupted_after(std::size_t done, std::size_t wanted, const std::s
     return fmt::format("interrupted after {} of {} {}", done, wanted, what);
 }
 
-Extent extent_in_frames(std::size_t done, std::size_t wanted)
+Completeness completeness_in_frames(std::size_t done, std::size_t wanted)
 {
     return {done, wanted, done == wanted, done == wanted ? "" : interrupted_after(done, wanted, "frames")};
 }
 
-void print_note(const Extent& extent)
+void print_note(const Completeness& completeness)
 {
-    if (!extent.note.empty())
-        fmt::print("{}: what follows is of these alone\n\n", extent.note);
+    if (!completeness.note.empty())
+        fmt::print("{}: what follows is of these alone\n\n", completeness.note);
 }
 
 RecordOutput::RecordOutput(const OutputOptions& options, const Provenance& from) : options_(options), from_(to_json(from))
@@ -100,7 +100,7 @@ RecordOutput::RecordOutput(const OutputOptions& options, const Provenance& from)
 void RecordOutput::add(const Json& record)
 {
     Json line = record;
-    for (const auto& [name, value] : {std::pair("frames_done", Json(extent_.frames_done)), std::pair("frames", Json(extent_.frames)), std::pair("complete", Json(extent_.complete))})
+    for (const auto& [name, value] : {std::pair("frames_done", Json(completeness_.frames_done)), std::pair("frames", Json(completeness_.frames)), std::pair("complete", Json(completeness_.complete))})
         if (!line.contains(name))
             line[name] = value;
     if (options_.csv || plot_ || page_)
@@ -129,13 +129,13 @@ void RecordOutput::finish()
         std::vector<Chart> charts;
         for (const html::ChartFigure& chart : charts_of(results))
             charts.push_back(chart.chart);
-        if (!charts.empty() || extent_.complete) { // else nothing has been measured yet
-            plot_->write(svg(charts, extent_.note));
+        if (!charts.empty() || completeness_.complete) { // else nothing has been measured yet
+            plot_->write(svg(charts, completeness_.note));
             plot_->commit();
         }
     }
     if (page_) {
-        page_->write(command_page(results, extent_.note));
+        page_->write(command_page(results, completeness_.note));
         page_->commit();
     }
 }

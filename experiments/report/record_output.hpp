@@ -22,7 +22,7 @@ struct OutputOptions {
 };
 
 /// How much of what was asked for a result is of. In every record as "frames_done", "frames" and "complete", so that a part is never read as the whole.
-struct Extent {
+struct Completeness {
     std::size_t frames_done = 0, frames = 0; ///< 0 of 0 where a command has no frames
     bool complete = true;
     std::string note; ///< for people, where it is not complete: interrupted_after()
@@ -30,19 +30,19 @@ struct Extent {
 
 /// "interrupted after 3 of 9 sizes".
 std::string interrupted_after(std::size_t done, std::size_t wanted, const std::string& what);
-/// The extent of a command whose only measure is frames.
-Extent extent_in_frames(std::size_t done, std::size_t wanted);
+/// The completeness of a command whose only measure is frames.
+Completeness completeness_in_frames(std::size_t done, std::size_t wanted);
 /// The note, where there is one, as the first line of a table on standard output.
-void print_note(const Extent& extent);
+void print_note(const Completeness& completeness);
 
-/// The records of a command: JSON objects, each with its extent and the provenance added. As JSON Lines they are printed as they come; CSV, charts and
+/// The records of a command: JSON objects, each with its completeness and the provenance added. As JSON Lines they are printed as they come; CSV, charts and
 /// the page follow when all are there.
 class RecordOutput {
 public:
     /// To be made before measuring: throws InputError if gnuplot is missing, or a file cannot be written.
     RecordOutput(const OutputOptions& options, const Provenance& from);
-    /// The extent of the records added from here on; a record's own fields of these names go before. The last one is also that of charts and page.
-    void set(Extent extent) { extent_ = std::move(extent); }
+    /// The completeness of the records added from here on; a record's own fields of these names go before. The last one is also that of charts and page.
+    void set(Completeness completeness) { completeness_ = std::move(completeness); }
     void add(const nlohmann::ordered_json& record);
     void add_all(const std::vector<nlohmann::ordered_json>& records);
     /// Writes what has not been printed yet. Without it charts and page stay as they were.
@@ -51,7 +51,7 @@ public:
 private:
     OutputOptions options_;
     nlohmann::ordered_json from_;
-    Extent extent_;
+    Completeness completeness_;
     std::vector<nlohmann::ordered_json> records_;
     std::optional<WholeFile> plot_, page_;
 };
