@@ -5,7 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
+#include <memory>
 #include <optional>
 
 #include <fmt/format.h>
@@ -15,7 +15,9 @@
 #include "exact/certificate.hpp"
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/line_file.hpp"
+#include "experiments/report/or_leave.hpp"
 #include "experiments/report/progress.hpp"
+#include "experiments/report/whole_file.hpp"
 #include "experiments/verify_lazy.hpp"
 #include "experiments/verify_report.hpp"
 #include "toolkit/bounds/rounding.hpp"
@@ -57,6 +59,7 @@ public:
     {
         rungs_[0](maps, looser_);
         for (std::size_t r = 1; r < rungs_.size(); ++r) {
+            throw_if_interrupted();
             rungs_[r](maps, tighter_);
             for (std::size_t i = 0; i < looser_.size(); ++i)
                 totals.broken += !(tighter_[i] <= looser_[i]);
@@ -94,39 +97,61 @@ void explain_last_frame(const Input& input, const Bvh& bvh, const VerifyOptions&
         return exact::OneBound{input.surface, bvh, maps, options.methods, options.kdop, bv, direction,
                                supports[bv * static_cast<std::size_t>(options.kdop) + static_cast<std::size_t>(direction)]};
     };
-    for (int d = 0; (options.output.json || !options.output.report.empty()) && d < options.kdop; ++d)
+    for (int d = 0; (options.output.json || !options.output.report.empty()) && d < options.kdop; ++d) {
+        throw_if_interrupted();
         if (const exact::OneBound root = place(0, d); std::isfinite(root.bound))
             totals.root.push_back({d, root.bound, exact::exact_loss(root)});
+    }
     if (options.vipr.empty())
         return;
-    std::filesystem::create_directories(options.vipr);
     for (std::size_t level = 0; level < totals.levels.size(); ++level)
-        for (int d = 0; d < options.kdop; ++d)
+        for (int d = 0; d < options.kdop; ++d) {
+            throw_if_interrupted();
             if (const exact::OneBound bound = place(bvh.level[level], d); std::isfinite(bound.bound)) {
                 const auto path = std::filesystem::path(options.vipr) / fmt::format("bv{}-d{}.vipr", bound.bv, d);
-                std::ofstream out(path);
-                out << exact::vipr(bound);
-                if (!out.flush())
-                    throw InputError::in_file(path.string(), "cannot be written");
+                write_whole(path, exact::vipr(bound));
             }
+        }
 }
 
-// Refits and proves every BV of one body in every frame, on top of what `totals` has.
-void verify_body(const Input& input, const VerifyOptions& options, LineFile* certificate, VerifyTotals& totals)
+RefitOptions refit_options(const VerifyOptions& options)
 {
-    Bvh bvh = build_bvh(input.surface, options.leaf);
-    damage(bvh, options.sabotage);
     const Rounding rounding = options.sabotage == Sabotage::no_rounding ? Rounding::plain : Rounding::proven;
-    const exact::Verifier verifier(input.surface, bvh);
-    const RefitOptions refit_options{options.methods, options.kdop, rounding, options.precision, options.passes, options.rest_shape, options.remember};
-    Refitter refit(bvh, input.surface, refit_options);
-    Ladder ladder(bvh, input.surface, refit_options);
+    return {options.methods, options.kdop, rounding, options.precision, options.passes, options.rest_shape, options.remember};
+}
+
+Bvh damaged_bvh(const DeformableSurface& surface, const VerifyOptions& options)
+{
+    Bvh bvh = build_bvh(surface, options.leaf);
+    damage(bvh, options.sabotage);
+    return bvh;
+}
+
+// What refits and verifies a body of the inputs, which it shares.
+struct Prepared {
+    Prepared(std::shared_ptr<const Inputs> shared, const Input& input, const VerifyOptions& options)
+        : inputs(std::move(shared)), bvh(damaged_bvh(input.surface, options)), verifier(input.surface, bvh, throw_if_interrupted), refit(bvh, input.surface, refit_options(options)),
+          ladder(bvh, input.surface, refit_options(options))
+    {
+    }
+    std::shared_ptr<const Inputs> inputs;
+    Bvh bvh;
+    exact::Verifier verifier;
+    Refitter refit;
+    Ladder ladder;
+};
+
+// Refits and proves every BV of one body in every frame, on top of what `totals` has. An interrupt ends it between two frames: `totals` has whole ones.
+void verify_body(const std::shared_ptr<const Inputs>& inputs, const Input& input, const VerifyOptions& options, LineFile* certificate, VerifyTotals& totals)
+{
+    const std::unique_ptr<Prepared> prepared = or_leave([inputs, &input, options] { return std::make_unique<Prepared>(inputs, input, options); });
+    const Bvh& bvh = prepared->bvh;
+    const exact::Verifier& verifier = prepared->verifier;
+    Refitter& refit = prepared->refit;
+    Ladder& ladder = prepared->ladder;
     totals.packed_bytes += refit.bytes();
     totals.rest_bytes += bvh.bytes();
 
-    add_levels(bvh, totals);
-    if (options.volume && totals.volumes.size() < totals.levels.size())
-        totals.volumes.resize(totals.levels.size());
     std::optional<exact::CertificateWriter> proof;
     if (certificate)
         proof.emplace(input.surface, bvh,
@@ -136,23 +161,34 @@ void verify_body(const Input& input, const VerifyOptions& options, LineFile* cer
                                    .clip = input.clip.name,
                                    .frames = input.clip.frames.size(),
                                    .missing = {}},
-                      [=](std::string_view text) { certificate->line(text); });
+                      [=](std::string_view text) {
+                          throw_if_interrupted(); // then none is written
+                          certificate->line(text);
+                      });
 
     const std::size_t before = totals.frames;
     Progress progress("verifying frames", totals.frames_wanted);
     std::vector<double> supports(bvh.bvs.size() * static_cast<std::size_t>(options.kdop));
     for (const auto& maps : input.clip.frames) {
-        if (interrupted())
-            break;
-        totals.unbounded_nodes += refit(maps, supports).unbounded_nodes;
+        throw_if_interrupted();
+        const std::size_t unbounded = refit(maps, supports).unbounded_nodes;
         const exact::FrameVerdict verdict = verifier.check(maps, options.methods, options.kdop, supports, options.rest_shape);
+        std::vector<VolumeTotals> volumes = totals.volumes; // kept with their frame
+        if (options.volume) {
+            volumes.resize(std::max(volumes.size(), bvh.level.size() - 1));
+            add_volumes(input.surface, bvh, maps, options.kdop, supports, volumes);
+        }
+        LadderTotals compared = totals.ladder;
+        ladder.check(maps, supports, compared);
         if (proof)
             proof->frame(input.clip.time_s[totals.frames - before], maps, supports, verdict);
+        if (totals.frames == before)
+            add_levels(bvh, totals);
         add(bvh, verdict, options.kdop, {}, totals);
+        totals.unbounded_nodes += unbounded;
+        totals.volumes = std::move(volumes);
+        totals.ladder = compared;
         totals.infinite += static_cast<std::size_t>(std::count_if(supports.begin(), supports.end(), [](double s) { return std::isinf(s); }));
-        if (options.volume)
-            add_volumes(input.surface, bvh, maps, options.kdop, supports, totals.volumes);
-        ladder.check(maps, supports, totals.ladder);
         progress.done(totals.frames);
     }
     if (proof && totals.frames - before == input.clip.frames.size())
@@ -175,39 +211,56 @@ int verify(const VerifyOptions& given)
         throw InputError("--vipr needs methods that bound over weights and the BV's own box: convex, corners, eq12, limited");
     const Provenance from = provenance(threads, options.input.seed);
     RecordOutput output(options.output, from);
-    const Inputs inputs = load_inputs(options.input);
+    std::optional<LineFile> certificate;
+    if (!options.certificate.empty())
+        certificate.emplace(options.certificate);
+    const auto shared = std::make_shared<const Inputs>(load_inputs(options.input));
+    const Inputs& inputs = *shared;
     if (inputs.bodies.size() > 1 && (!options.certificate.empty() || !options.vipr.empty()))
         throw InputError("--certificate and --vipr are of one body; --body chooses it");
     VerifyTotals totals;
     for (const Input& input : inputs.bodies)
         totals.frames_wanted += input.clip.frames.size();
-    std::optional<LineFile> certificate;
-    if (!options.certificate.empty())
-        certificate.emplace(options.certificate);
+    if (!options.vipr.empty())
+        std::filesystem::create_directories(options.vipr);
     catch_interrupt();
     std::optional<LazyTotals> lazy;
-    if (options.update != VerifiedUpdate::refit)
-        lazy = verify_lazy(inputs, options, totals);
-    else if (options.sabotage == Sabotage::stale)
+    if (options.update != VerifiedUpdate::refit) {
+        lazy.emplace();
+        totals.at_once = inputs.bodies.size();
+    } else if (options.sabotage == Sabotage::stale) {
         throw InputError("--sabotage stale goes with --update lazy, full and front");
-    for (const Input& input : inputs.bodies)
-        if (!lazy && !interrupted())
-            verify_body(input, options, certificate ? &*certificate : nullptr, totals);
-    if (certificate)
-        certificate->close();
+    }
+    try {
+        if (lazy)
+            verify_lazy(inputs, options, totals, *lazy);
+        for (const Input& input : inputs.bodies)
+            if (!lazy)
+                verify_body(shared, input, options, certificate ? &*certificate : nullptr, totals);
+    } catch (const Interrupted&) { // what is in `totals` is kept
+    }
+    const Completeness completeness = completeness_of(totals);
     finish(totals);
     totals.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
+    output.set(completeness);
     output.add_all(lazy ? lazy_records_of(inputs, options, totals, *lazy) : records_of(inputs, options, totals));
     output.finish();
     if (!options.output.records_only() && lazy)
         print_lazy_table(inputs, options, totals, *lazy, from);
     else if (!options.output.records_only())
         print_table(inputs, options, totals, from);
+    if (certificate && completeness.complete)
+        certificate->commit();
     if (totals.violated || !totals.ladder.holds())
         return 1;
-    if (totals.frames < totals.frames_wanted) {
-        fmt::print(stderr, "cinch: interrupted after {} of {} frames\n", totals.frames, totals.frames_wanted);
+    if (!completeness.complete) {
+        std::fflush(stdout);
+        fmt::print(stderr, "cinch: {}{}\n", completeness.note, certificate ? "; " + options.certificate + " is not written: it would not prove the rest" : "");
+        return 130;
+    }
+    if (interrupted()) {
+        fmt::print(stderr, "cinch: interrupted after all frames\n");
         return 130;
     }
     return 0;

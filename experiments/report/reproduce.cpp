@@ -20,7 +20,9 @@
 #include "experiments/report/record_output.hpp"
 #include "experiments/report/results.hpp"
 #include "experiments/report/stages.hpp"
+#include "experiments/report/whole_file.hpp"
 #include "toolkit/surface/input_error.hpp"
+#include "toolkit/surface/read_mesh.hpp"
 
 namespace cinch {
 namespace {
@@ -99,18 +101,20 @@ Outcome run(const Stage& stage, const ReproduceOptions& options)
     }
     if (lines == 0)
         return Outcome::failed;
-    std::ofstream out(part, std::ios::app);
-    out << closing_line(stage, options, lines, status, seconds) << '\n';
-    out.close();
-    if (!out)
-        throw InputError::in_file(part.string(), "writing failed; is the disk full?");
-    fs::rename(part, file);
+    WholeFile whole(file);
+    whole.write(read_bytes(part));
+    whole.write(closing_line(stage, options, lines, status, seconds) + "\n");
+    whole.commit();
+    fs::remove(part, ignored);
     return status == 0 ? Outcome::stored : Outcome::check_failed;
 }
 
 /// Reads what is stored and writes the page. Damage goes to standard error too.
 std::vector<Damage> write_page(const fs::path& folder, const fs::path& page)
 {
+    for (const Stage& stage : stages())
+        guard_input(folder / (stage.name + ".jsonl"));
+    WholeFile whole(page);
     Results results;
     ReportNotes notes;
     for (const Stage& stage : stages()) {
@@ -123,14 +127,8 @@ std::vector<Damage> write_page(const fs::path& folder, const fs::path& page)
         for (Record& record : read_results(file, notes.damage))
             results.add(std::move(record));
     }
-    const fs::path part = page.string() + ".part";
-    {
-        std::ofstream out(part, std::ios::binary);
-        out << report_page(results, notes);
-        if (!out.flush())
-            throw InputError::in_file(part.string(), "cannot be written");
-    }
-    fs::rename(part, page);
+    whole.write(report_page(results, notes));
+    whole.commit();
     for (const Damage& damage : notes.damage)
         fmt::print(stderr, "cinch: {}\n", describe({(folder / damage.file).string(), damage.line, damage.what + "; the file is left out"}));
     return notes.damage;
@@ -160,6 +158,7 @@ int reproduce(const ReproduceOptions& options)
     const double planned = left;
     const auto start = std::chrono::steady_clock::now();
     std::vector<std::string> bad;
+    bool refuted = false;
     for (std::size_t i = 0; i < wanted.size() && !interrupted(); ++i) {
         const Stage& stage = wanted[i];
         // What is left in proportion to how long the others took, once they say something about this machine.
@@ -167,7 +166,10 @@ int reproduce(const ReproduceOptions& options)
         fmt::print(stderr, "{}/{} {}: {}; {} left\n", i + 1, wanted.size(), stage.name, stage.what, duration(left * (done > 0.05 * planned ? elapsed / done : 1)));
         switch (run(stage, options)) {
         case Outcome::stored: break;
-        case Outcome::check_failed: bad.push_back(stage.name + ": a check failed"); break;
+        case Outcome::check_failed:
+            bad.push_back(stage.name + ": a check failed");
+            refuted = true;
+            break;
         case Outcome::failed: bad.push_back(stage.name + ": 'cinch' failed, nothing is stored"); break;
         case Outcome::interrupted: continue;
         }
@@ -182,7 +184,7 @@ int reproduce(const ReproduceOptions& options)
         return 130;
     }
     fmt::print("{}\n", page.string());
-    return bad.empty() && damage.empty() ? 0 : 1;
+    return refuted ? 1 : bad.empty() && damage.empty() ? 0 : 2;
 }
 
 int report(const ReportOptions& options)
@@ -196,7 +198,7 @@ int report(const ReportOptions& options)
     const fs::path page = options.page.empty() ? folder / "report.html" : fs::path(options.page);
     const auto damage = write_page(folder, page);
     fmt::print("{}\n", page.string());
-    return damage.empty() ? 0 : 1;
+    return damage.empty() ? 0 : 2;
 }
 
 } // namespace cinch

@@ -27,9 +27,9 @@ template <class T> T get(const std::string& bytes, std::size_t& place)
 
 } // namespace
 
-std::uint64_t checksum(std::string_view bytes)
+std::uint64_t checksum(std::string_view bytes, std::uint64_t before)
 {
-    std::uint64_t hash = 0xcbf29ce484222325u;
+    std::uint64_t hash = before;
     for (const char c : bytes) {
         hash ^= static_cast<unsigned char>(c);
         hash *= 0x100000001b3u;

@@ -46,7 +46,7 @@ struct FrameFile {
 };
 FrameFile read_frames(const std::filesystem::path& path);
 
-/// FNV-1a, 64 bits.
-std::uint64_t checksum(std::string_view bytes);
+/// FNV-1a, 64 bits; of all bytes before and these, given that of those before.
+std::uint64_t checksum(std::string_view bytes, std::uint64_t before = 0xcbf29ce484222325u);
 
 } // namespace cinch
