@@ -212,7 +212,7 @@ TEST_CASE("meshes are those of the frames")
     TemporaryFolder folder;
     for (const std::string format : {"ply", "obj"}) {
         REQUIRE(test::cinch("simulate beam --duration 0.1 --mesh-format " + format + " --meshes " + folder.path().string()).status == 0);
-        const TriangleMesh mesh = read_mesh(folder.path() / ("beam-00006." + format));
+        const TriangleMesh mesh = read_mesh(folder.path() / ("beam-00006." + format)).mesh;
         CHECK(mesh.vertices.size() == 1610);
         double lowest = 0;
         for (const Vec3& v : mesh.vertices)
