@@ -69,10 +69,10 @@ MeshFile parse_obj(std::string_view bytes, const std::string& file)
     std::vector<std::uint32_t> polygon;
     while (scan.next_line()) {
         const std::string_view keyword = scan.word();
-        if (keyword == "v") {
+        if (is_keyword(keyword, "v")) {
             mesh.vertices.push_back(scan.point("a coordinate"));
             any = true;
-        } else if (keyword == "f" || keyword == "fo") {
+        } else if (is_keyword(keyword, "f") || is_keyword(keyword, "fo")) {
             any = true;
             polygon.clear();
             for (std::string_view word; !(word = scan.word()).empty();) {
@@ -91,6 +91,8 @@ MeshFile parse_obj(std::string_view bytes, const std::string& file)
         } else if (keyword == "p") {
             ++points;
         } else if (!is_one_of(passed_over, keyword)) {
+            if (std::string_view("+-.0123456789").find(keyword[0]) != std::string_view::npos)
+                scan.fail("the line begins with a number; a line that continues another needs a '\\' before it");
             refuse_other_surfaces(scan, keyword);
             if (unknown++ == 0)
                 first_unknown = "'" + printable(keyword) + "' in line " + std::to_string(scan.line());
