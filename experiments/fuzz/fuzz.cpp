@@ -4,7 +4,6 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -17,6 +16,7 @@
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/number.hpp"
 #include "experiments/report/provenance.hpp"
+#include "experiments/report/whole_file.hpp"
 #include "toolkit/surface/input_error.hpp"
 
 namespace cinch {
@@ -114,9 +114,12 @@ private:
         const std::string text = to_json(smallest, find_fault(smallest, options_.defect));
         std::string place;
         if (!options_.corpus.empty()) {
-            std::filesystem::create_directories(options_.corpus);
+            std::error_code error;
+            std::filesystem::create_directories(options_.corpus, error);
+            if (!std::filesystem::is_directory(options_.corpus, error))
+                throw InputError::in_file(options_.corpus, "is no folder and cannot be made one");
             const auto path = std::filesystem::path(options_.corpus) / fmt::format("{}-{:x}.json", smallest.family, std::hash<std::string>{}(text));
-            std::ofstream(path) << text << '\n';
+            write_whole(path, text + "\n");
             place = path.string();
         }
         if (terminal_)

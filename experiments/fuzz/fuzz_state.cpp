@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "experiments/fuzz/fuzz_case.hpp"
+#include "experiments/report/whole_file.hpp"
 #include "toolkit/simulate/frame_file.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 
@@ -116,26 +116,15 @@ FuzzStateFile::FuzzStateFile(const std::string& file, const FuzzSettings& settin
     : file_(file), settings_(settings), lock_(file + ".lock", file, "another 'cinch fuzz' is using it; wait for it, or give each run a file of its own")
 {
     std::error_code error;
-    if (std::filesystem::exists(std::filesystem::symlink_status(file, error)))
+    const auto there = std::filesystem::status(file, error);
+    if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there))
+        throw InputError::in_file(file, "is no regular file");
+    if (std::filesystem::exists(there))
         found_ = parse_fuzz_state(read_bytes(file), file, settings_);
     else
         save(found_);
 }
 
-void FuzzStateFile::save(const FuzzState& state) const
-{
-    // Beside it first, then in its place. The lock makes the name this process's own.
-    const std::string beside = file_ + ".new";
-    std::ofstream out(beside, std::ios::binary | std::ios::trunc);
-    out << fuzz_state_text(settings_, state);
-    out.close();
-    std::error_code error;
-    if (out)
-        std::filesystem::rename(beside, file_, error);
-    if (!out || error) {
-        std::filesystem::remove(beside, error);
-        throw InputError::in_file(file_, "cannot be written; is the disk full?");
-    }
-}
+void FuzzStateFile::save(const FuzzState& state) const { write_whole(file_, fuzz_state_text(settings_, state)); }
 
 } // namespace cinch
