@@ -18,7 +18,8 @@
 #include "experiments/report/record_output.hpp"
 #include "experiments/report/results.hpp"
 #include "experiments/report/stages.hpp"
-#include "toolkit/surface/input_error.hpp"
+#include "experiments/report/whole_file.hpp"
+#include "toolkit/surface/read_mesh.hpp"
 
 namespace cinch {
 namespace {
@@ -79,12 +80,8 @@ Outcome run(const Stage& stage, const ReproduceOptions& options)
     }
     if (lines == 0)
         return Outcome::failed;
-    std::ofstream out(part, std::ios::app);
-    out << closing_line(stage, options, lines, status, seconds) << '\n';
-    out.close();
-    if (!out)
-        throw InputError::in_file(part.string(), "writing failed; is the disk full?");
-    fs::rename(part, file);
+    write_whole(file, sealed(read_bytes(part), closing_line(stage, options, lines, status, seconds)));
+    fs::remove(part, ignored);
     return status == 0 ? Outcome::stored : Outcome::check_failed;
 }
 

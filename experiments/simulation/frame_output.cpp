@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/simulation/frame_output.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <sstream>
 
 #include <fmt/format.h>
 
+#include "experiments/report/provenance.hpp"
 #include "toolkit/simulate/stream.hpp"
 #include "toolkit/surface/input_error.hpp"
 #include "toolkit/surface/read_mesh.hpp"
@@ -16,7 +19,7 @@ namespace cinch {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr std::string_view magic = "cinchchk2";
+constexpr std::string_view magic = "cinchchk3";
 
 bool is_text(const std::string& file) { return file.ends_with(".jsonl"); }
 
@@ -63,11 +66,20 @@ FrameFormat format_of(const std::string& file) { return file.empty() ? FrameForm
 
 struct Checkpoint {
     struct Header {
-        std::uint64_t identity = 0, bytes = 0, written = 0; ///< of the scene; of the file of frames; frames in it
+        std::uint64_t identity = 0;                    ///< of the scene
+        std::uint64_t bytes = 0, written = 0, sum = 0; ///< of the file of frames; frames in it; its checksum
         FrameFormat format = FrameFormat::none;
+        std::uint64_t program_bytes = 0, state_bytes = 0; ///< what follows
     } header;
+    std::string program; ///< that wrote it
     std::string state;
 };
+
+std::string this_program()
+{
+    const Provenance from = provenance(1, 0);
+    return from.version + " (" + from.commit + ")";
+}
 
 // The file's last 8 bytes are a checksum of all before them.
 Checkpoint read_checkpoint(const std::string& file)
@@ -83,8 +95,30 @@ Checkpoint read_checkpoint(const std::string& file)
     if (sum != checksum(std::string_view(bytes).substr(0, bytes.size() - 8)))
         throw InputError::in_file(file, "was changed or is cut off");
     read_raw<Checkpoint::Header>(in, {&checkpoint.header, 1});
-    checkpoint.state = bytes.substr(overhead - 8, bytes.size() - overhead);
+    const Checkpoint::Header& header = checkpoint.header;
+    const std::uint64_t rest = bytes.size() - overhead;
+    if (header.program_bytes > rest || header.state_bytes != rest - header.program_bytes || header.format > FrameFormat::text ||
+        (header.format == FrameFormat::none && (header.bytes != 0 || header.written != 0)))
+        throw InputError::in_file(file, "contradicts itself");
+    checkpoint.program = bytes.substr(overhead - 8, header.program_bytes);
+    checkpoint.state = bytes.substr(overhead - 8 + header.program_bytes, header.state_bytes);
     return checkpoint;
+}
+
+/// Of the first bytes of a file; nothing if there are not so many.
+std::optional<std::uint64_t> checksum_of_file(const std::string& file, std::uint64_t bytes)
+{
+    std::ifstream in(file, std::ios::binary);
+    std::vector<char> block(1 << 20);
+    std::uint64_t sum = checksum_of_nothing;
+    while (bytes > 0) {
+        const std::uint64_t wanted = std::min<std::uint64_t>(bytes, block.size());
+        if (!in.read(block.data(), static_cast<std::streamsize>(wanted)))
+            return std::nullopt;
+        sum = checksum({block.data(), wanted}, sum);
+        bytes -= wanted;
+    }
+    return sum;
 }
 
 void require(std::ostream& out, const std::string& file)
@@ -122,13 +156,14 @@ FrameOutput::FrameOutput(const SimulateOptions& options, const FoundScene& scene
         if (!options.frames.empty()) {
             frames_.open(options.frames, std::ios::binary | std::ios::trunc);
             if (!is_text(options.frames))
-                frames_ << frame_header(layout_);
+                append(frame_header(layout_));
             require(frames_, options.frames);
-            bytes_ = is_text(options.frames) ? 0 : layout_.header_bytes();
         }
         return;
     }
     const Checkpoint checkpoint = read_checkpoint(options.resume);
+    if (checkpoint.program != this_program())
+        throw InputError::in_file(options.resume, fmt::format("was written by cinch {}, this is {}, whose frames may differ; continue with the same program", checkpoint.program, this_program()));
     if (checkpoint.header.identity != identity_)
         throw InputError::in_file(options.resume, "is of another scene, or of other settings than these");
     if (checkpoint.header.format != format_of(options.frames))
@@ -139,14 +174,26 @@ FrameOutput::FrameOutput(const SimulateOptions& options, const FoundScene& scene
     simulation.restore(state);
     if (!state || state.peek() != std::istringstream::traits_type::eof())
         throw InputError::in_file(options.resume, "does not fit this scene");
+    if (simulation.frame() >= simulation.frame_count())
+        throw InputError::in_file(options.resume, fmt::format("is at frame {}, and this run ends with frame {}; give it a longer --duration", simulation.frame(), simulation.frame_count() - 1));
+    for (const Simulation::Body& body : simulation.bodies())
+        for (const Field* field : {&body.simulation.positions(), &body.simulation.velocities()})
+            if (!std::all_of(field->begin(), field->end(), [](double x) { return std::isfinite(x); }))
+                throw InputError::in_file(options.resume, "has numbers for body '" + body.name + "' that are not finite");
+    const std::uint64_t frames = simulation.frame() + 1;
+    if (checkpoint.header.format != FrameFormat::none && checkpoint.header.written != frames)
+        throw InputError::in_file(options.resume, fmt::format("is at frame {}, but says that {} frames are written", simulation.frame(), checkpoint.header.written));
     bytes_ = checkpoint.header.bytes;
     written_ = checkpoint.header.written;
+    sum_ = checkpoint.header.sum;
     if (options.frames.empty())
         return;
     std::error_code error;
     const std::uintmax_t there = fs::file_size(options.frames, error);
     if (error || there < bytes_)
         throw InputError::in_file(options.frames, fmt::format("does not have the {} bytes that {} continues", bytes_, options.resume));
+    if (checksum_of_file(options.frames, bytes_) != sum_)
+        throw InputError::in_file(options.frames, fmt::format("is not what {} continues: its first {} bytes are others", options.resume, bytes_));
     fs::resize_file(options.frames, bytes_); // what came after the checkpoint comes again
     frames_.open(options.frames, std::ios::binary | std::ios::app);
     require(frames_, options.frames);
@@ -168,8 +215,7 @@ std::string FrameOutput::write(Simulation& simulation)
     if (!options_.frames.empty()) {
         const std::string record = is_text(options_.frames) ? json_lines(simulation.frame(), simulation.time_s(), names_, maps)
                                                             : frame_record(layout_, simulation.frame(), simulation.time_s(), maps);
-        frames_ << record;
-        bytes_ += record.size();
+        append(record);
         ++written_;
         require(frames_, options_.frames);
     }
@@ -194,6 +240,13 @@ std::string FrameOutput::write_meshes(std::size_t frame, std::span<const std::ve
     return "";
 }
 
+void FrameOutput::append(const std::string& bytes)
+{
+    frames_ << bytes;
+    bytes_ += bytes.size();
+    sum_ = checksum(bytes, sum_);
+}
+
 void FrameOutput::save(const Simulation& simulation)
 {
     if (frames_.is_open()) {
@@ -204,9 +257,12 @@ void FrameOutput::save(const Simulation& simulation)
         return;
     std::ostringstream out;
     out << magic;
-    const Checkpoint::Header header{identity_, bytes_, written_, format_of(options_.frames)};
+    std::ostringstream state;
+    simulation.save(state);
+    const std::string program = this_program();
+    const Checkpoint::Header header{identity_, bytes_, written_, sum_, format_of(options_.frames), program.size(), state.view().size()};
     write_raw<Checkpoint::Header>(out, {&header, 1});
-    simulation.save(out);
+    out << program << state.view();
     const std::uint64_t sum = checksum(out.view());
     write_raw<std::uint64_t>(out, {&sum, 1});
     const std::string temporary = checkpoint_ + ".new";

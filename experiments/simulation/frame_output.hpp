@@ -22,6 +22,7 @@ public:
     void save(const Simulation& simulation);
 
 private:
+    void append(const std::string& bytes);
     std::string write_meshes(std::size_t frame, std::span<const std::vector<AffineMap>> maps, const Simulation& simulation);
 
     SimulateOptions options_;
@@ -31,7 +32,7 @@ private:
     std::vector<std::string> names_;
     std::vector<std::unique_ptr<SurfaceEvaluator<float>>> surface_; ///< if there are meshes to write
     std::ofstream frames_;
-    std::uint64_t bytes_ = 0, written_ = 0; ///< of the file of frames; frames in it
+    std::uint64_t bytes_ = 0, written_ = 0, sum_ = checksum_of_nothing; ///< of the file of frames; frames in it; its checksum
 };
 
 } // namespace cinch

@@ -68,39 +68,47 @@ std::string blank(Draw& draw, bool line_ends)
 TEST_CASE("an OFF file gives the same surface however its numbers are spread over lines")
 {
     Draw draw(5);
-    for (std::size_t i = 0; i < test::share_of(20000); ++i) {
+    const std::size_t files = test::share_of(20000);
+    std::size_t refused = 0;
+    for (std::size_t i = 0; i < files; ++i) {
         const Drawn drawn = draw_polygons(draw, 0);
-        const bool vertices_joined = coin(draw), faces_joined = coin(draw), coloured = !faces_joined && coin(draw);
+        // Faces: one per line, each over several lines, several on a line.
+        const bool vertices_joined = coin(draw), faces_spread = coin(draw), faces_joined = !faces_spread && coin(draw), coloured = !faces_joined && coin(draw);
         const std::size_t kind = below(draw, 4); // OFF, COFF, NOFF, STOFF
         std::string text = std::array{"OFF", "COFF", "NOFF", "STOFF"}[kind] + blank(draw, true);
-        // Several vertices on the line of the counts need the number of edges, else the first coordinate could be it.
-        text += std::to_string(drawn.vertices.size()) + blank(draw, true) + std::to_string(drawn.polygons.size()) + blank(draw, vertices_joined) + "7";
-        text += vertices_joined ? blank(draw, true) : "\n";
+        text += std::to_string(drawn.vertices.size()) + blank(draw, true) + std::to_string(drawn.polygons.size());
+        const std::size_t edges = below(draw, 3); // on the line, on the next, missing
+        const bool vertices_spread = vertices_joined && edges != 2; // without it, a first coordinate alone on a line would be it
+        text += edges == 0 ? blank(draw, false) + "7" : edges == 1 ? " # edges\n7" : "";
+        text += vertices_joined && edges == 0 ? blank(draw, true) : "\n";
         for (std::size_t v = 0; v < drawn.vertices.size(); ++v) {
             for (int axis = 0; axis < 3; ++axis)
-                text += (axis ? blank(draw, vertices_joined) : "") + shown(drawn.vertices[v][axis]);
-            for (std::size_t extra = 0; extra < std::array{0, 4, 3, 2}[kind]; ++extra)
-                text += blank(draw, vertices_joined) + "0.5";
-            text += vertices_joined && v + 1 < drawn.vertices.size() ? blank(draw, true) : "\n";
+                text += (axis ? blank(draw, vertices_spread) : "") + shown(drawn.vertices[v][axis]);
+            for (std::size_t extra = 0; extra < std::array<std::size_t, 4>{0, 4, 3, 2}[kind]; ++extra)
+                text += blank(draw, vertices_spread) + "0.5";
+            text += vertices_joined && v + 1 < drawn.vertices.size() ? blank(draw, vertices_spread) : "\n";
         }
         for (const auto& polygon : drawn.polygons) {
             text += std::to_string(polygon.size());
             for (const std::size_t v : polygon)
-                text += blank(draw, faces_joined) + std::to_string(v);
-            text += coloured ? " 255 0 128 # c\n" : faces_joined ? blank(draw, true) : "\n";
+                text += blank(draw, faces_spread) + std::to_string(v);
+            text += coloured ? " 255 0 128 # c\n" : faces_joined && coin(draw) ? " " : "\n";
         }
         MeshFile file;
         try {
             file = parse_off(text, "a");
         } catch (const InputError& error) {
-            // A small polygon may be taken for the colour of the one before, and then another way may fit as well.
+            // With so few vertices, small faces and no number of edges, another way may fit as well.
             INFO(text);
-            CHECK_THAT(error.what(), Catch::Contains("can be read in two ways"));
-            REQUIRE(drawn.small > 0);
+            INFO(error.what());
+            REQUIRE_THAT(error.what(), Catch::Contains("can be read in two ways"));
+            REQUIRE((vertices_joined || faces_joined || edges == 2 || kind > 0));
+            ++refused;
             continue;
         }
         check_surface(file, drawn, text);
     }
+    CHECK(refused < 1 + files / 40);
 }
 
 TEST_CASE("PLY and OFF faces of any size, those of fewer than three vertices are counted")

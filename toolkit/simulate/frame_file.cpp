@@ -2,6 +2,7 @@
 #include "toolkit/simulate/frame_file.hpp"
 
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <numeric>
 
@@ -27,9 +28,9 @@ template <class T> T get(const std::string& bytes, std::size_t& place)
 
 } // namespace
 
-std::uint64_t checksum(std::string_view bytes)
+std::uint64_t checksum(std::string_view bytes, std::uint64_t before)
 {
-    std::uint64_t hash = 0xcbf29ce484222325u;
+    std::uint64_t hash = before;
     for (const char c : bytes) {
         hash ^= static_cast<unsigned char>(c);
         hash *= 0x100000001b3u;
@@ -75,6 +76,8 @@ FrameFile read_frames(const std::filesystem::path& path)
     FrameFile frames;
     const auto bodies = get<std::uint32_t>(bytes, place);
     frames.layout.frame_s = get<double>(bytes, place);
+    if (!(frames.layout.frame_s > 0) || !std::isfinite(frames.layout.frame_s))
+        throw InputError::in_file(file, "declares " + std::to_string(frames.layout.frame_s) + " seconds from frame to frame");
     if (bytes.size() - place < std::size_t(4) * bodies)
         throw InputError::in_file(file, "ends within its header");
     for (std::uint32_t b = 0; b < bodies; ++b)

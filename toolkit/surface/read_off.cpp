@@ -21,8 +21,8 @@ struct Layout {
     bool edge_count;            ///< a third number follows the numbers of vertices and faces
     std::size_t vertex_numbers; ///< of each vertex, whatever the lines; or `one_per_line`, with anything after its coordinates
     enum class Faces {
-        line_each,      ///< indices and colour on one line
-        ends_with_line, ///< indices on any number of lines; the colour ends with the line of the last
+        line_each,      ///< indices and anything else on one line
+        ends_with_line, ///< indices on any number of lines; a colour, at most four numbers, ends with the line of the last
         joined          ///< no colours, so that lines do not matter
     } faces;
 };
@@ -153,6 +153,8 @@ void read_faces(TextScan& scan, const Header& header, Layout::Faces layout, Mesh
                           std::to_string(header.vertices) + " vertices");
             polygon.push_back(static_cast<std::uint32_t>(index));
         }
+        if (layout == Layout::Faces::ends_with_line && words_left(scan) > 4)
+            scan.fail("a face is followed by more numbers than a colour has");
         small += polygon.size() < 3;
         for (std::size_t k = 2; k < polygon.size(); ++k)
             out.mesh.triangles.push_back({polygon[0], polygon[k - 1], polygon[k]});
