@@ -97,7 +97,8 @@ FuzzState parse_fuzz_state(const std::string& text, const std::string& file, con
     if (!root.is_object())
         throw InputError::in_file(file, "is no state file of 'cinch fuzz': no JSON object");
     const Fields fields(root, file);
-    for (const auto& [name, mine] : to_json(settings).items())
+    const Json own = to_json(settings);
+    for (const auto& [name, mine] : own.items())
         if (const Json& found = fields.at(name.c_str()); found != mine)
             fields.fail(name.c_str(), fmt::format("{} there, {} in this run; use the same program and options, or another file", Fields::shown(found), Fields::shown(mine)));
     // Case i of the shard is case i · shards + shard of all, a number of 64 bits.
