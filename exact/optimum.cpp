@@ -2,8 +2,8 @@
 #include "exact/optimum.hpp"
 
 #include <numeric>
-#include <stdexcept>
 
+#include "exact/check_failed.hpp"
 #include "exact/scaled.hpp"
 
 namespace cinch::exact {
@@ -51,7 +51,7 @@ Exact from_integer(const mpz_class& z, long exponent)
 void require(bool condition, const char* what)
 {
     if (!condition)
-        throw std::logic_error(std::string("optimum over the weight space: certificate refused: ") + what);
+        throw CheckFailed(std::string("optimum over the weight space: certificate refused: ") + what);
 }
 
 // w ∈ W', Σ w b = value, D(λ) = value.

@@ -22,7 +22,13 @@ std::string name_of(Statement statement)
     return "unknown";
 }
 
-Verifier::Verifier(const DeformableSurface& surface, const Bvh& bvh) : surface_(surface), bvh_(bvh)
+namespace {
+
+void no_pause() {}
+
+} // namespace
+
+Verifier::Verifier(const DeformableSurface& surface, const Bvh& bvh, void (*pause)()) : surface_(surface), bvh_(bvh), pause_(pause ? pause : no_pause)
 {
     require_default_arithmetic();
     require_dyadic_weights(surface);
@@ -30,6 +36,7 @@ Verifier::Verifier(const DeformableSurface& surface, const Bvh& bvh) : surface_(
     vertices_.resize(bvh.bvs.size());
     faults_.resize(bvh.bvs.size());
     parallel_blocks(bvh.bvs.size(), 64, [&](std::size_t first, std::size_t last) {
+        pause_();
         for (std::size_t i = first; i < last; ++i) {
             vertices_[i] = vertices_of(surface, bvh, i);
             faults_[i] = rest_data_fault(surface, bvh, i, vertices_[i]);
@@ -55,6 +62,7 @@ FrameVerdict Verifier::check(std::span<const AffineMap> maps, Methods methods, i
     evaluate(surface_.mesh.vertices, surface_.weights, maps, frame.computed_vertices);
     frame.exact_vertices.resize(vertex_count);
     parallel_blocks(vertex_count, 512, [&](std::size_t first, std::size_t last) {
+        pause_();
         const DirectedRounding upward;
         for (std::size_t v = first; v < last; ++v)
             frame.exact_vertices[v] = deformed<Interval>(surface_.mesh.vertices[v], surface_.weights.of(v), maps);
@@ -71,6 +79,8 @@ FrameVerdict Verifier::check(std::span<const AffineMap> maps, Methods methods, i
         BvCheck check(frame);
         for (std::size_t b = first; b < last; ++b)
             for (std::size_t i = b * block_bvs; i < std::min(bvh_.bvs.size(), (b + 1) * block_bvs); ++i) {
+                if (i % 8 == 0)
+                    pause_();
                 if (!faults_[i].empty()) {
                     std::fill_n(out.failed.begin() + static_cast<std::ptrdiff_t>(i * k), k, rest_data);
                     blocks[b].violations.push_back({i, -1, rest_data, faults_[i]});

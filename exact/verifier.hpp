@@ -58,8 +58,9 @@ class Verifier {
 public:
     /// Checks the rest data of every BV at once: both must stay as they are from here on, and alive. Throws std::invalid_argument
     /// if the tree is no tree over the mesh's triangles, a rest vertex is not finite, or the weights are not dyadic and convex;
-    /// std::runtime_error for a changed floating-point environment.
-    Verifier(const DeformableSurface& surface, const Bvh& bvh);
+    /// std::runtime_error for a changed floating-point environment. `pause` is called every few BVs, here and in check(), on any
+    /// thread: what it throws ends the call.
+    Verifier(const DeformableSurface& surface, const Bvh& bvh, void (*pause)() = nullptr);
 
     /// Why rest data fail, per BV; empty strings where they hold.
     const std::vector<std::string>& rest_data_faults() const { return faults_; }
@@ -71,6 +72,7 @@ public:
 private:
     const DeformableSurface& surface_;
     const Bvh& bvh_;
+    void (*pause_)();
     std::vector<std::vector<std::uint32_t>> vertices_; // of each BV, each once
     std::vector<std::string> faults_;
 };

@@ -123,6 +123,8 @@ void add_simulate(CLI::App& app, SimulateOptions& o)
                    "  cinch simulate santa-ring-3 --frames ring.frames --resume ring.state\n"
                    "  cinch simulate twist-180 --meshes twist --mesh-format obj\n"
                    "\n"
+                   "Until a run is whole its frames stand in FILE.part, where --resume goes on.\n"
+                   "\n"
                    "Exit status: 0 done, 1 a step could not be solved (the state before it is kept),\n"
                    "2 bad usage or scene, 130 interrupted (what is done is kept).");
 }
@@ -217,7 +219,7 @@ void add_verify(CLI::App& app, VerifyOptions& o)
                    "              w_j M_j (x, y, z, 1).\n"
                    "\n"
                    "Exit status: 0 all proven, 1 a bound violated, 2 bad usage or input,\n"
-                   "130 interrupted (results so far are printed).");
+                   "130 interrupted (results so far are printed; a certificate is not written).");
 }
 
 void add_tightness(CLI::App& app, TightnessOptions& o)

@@ -69,8 +69,9 @@ void add_reproduce(CLI::App& app, ReproduceOptions& o)
                    "  cinch reproduce                        everything\n"
                    "  cinch report results                   the page again\n"
                    "\n"
-                   "Exit status: 0 done, 1 an experiment failed or a stored result is damaged (the\n"
-                   "rest is done), 2 bad usage, 130 interrupted (what is finished is kept).");
+                   "Exit status: 0 done, 1 a check of an experiment failed, 2 bad usage, an\n"
+                   "experiment that could not run, or a damaged result (the rest is done),\n"
+                   "130 interrupted (what is finished is kept).");
 }
 
 void add_report(CLI::App& app, ReportOptions& o)
@@ -84,8 +85,8 @@ void add_report(CLI::App& app, ReportOptions& o)
                    "  cinch report results\n"
                    "  cinch report results --page paper.html\n"
                    "\n"
-                   "Exit status: 0 done, 1 a file is damaged (the page has the rest), 2 bad usage or\n"
-                   "no results.");
+                   "Exit status: 0 done, 2 bad usage, no results, or a file is damaged (the page has\n"
+                   "the rest).");
 }
 
 } // namespace cinch

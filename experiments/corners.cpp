@@ -10,6 +10,7 @@
 #include "exact/corners.hpp"
 #include "experiments/case_file.hpp"
 #include "experiments/report/interrupt.hpp"
+#include "experiments/report/whole_file.hpp"
 #include "toolkit/bounds/rounding.hpp"
 #include "toolkit/deform/arithmetic.hpp"
 #include "toolkit/surface/input_error.hpp"
@@ -64,19 +65,24 @@ void print_text(const std::string& file, bool feasible, const exact::CornerCount
     }
 }
 
-// False if interrupted.
-bool list_corners(const std::string& file, WeightSpace space, const CornersOptions& options)
+// Throws Interrupted, and says so where the list ends.
+void list_corners(const std::string& file, WeightSpace space, const CornersOptions& options, RecordOutput& output)
 {
     std::uint64_t listed = 0;
     exact::visit_corners(space, [&](const exact::CornerRun& run, const exact::Corner& corner) {
         const std::vector<std::string> weights = exact::weights_of(space, run, corner);
         if (options.output.json) // one of very many: without provenance
-            fmt::print("{}\n", Json{{"experiment", "corners"}, {"file", file}, {"corner", weights}}.dump(-1, ' ', false, Json::error_handler_t::replace));
+            fmt::print("{}\n", Json{{"experiment", "corners"}, {"file", file}, {"corner", weights}, {"frames_done", 0}, {"frames", 0}, {"complete", true}}.dump(-1, ' ', false, Json::error_handler_t::replace));
         else
             fmt::print("{}\n", fmt::join(weights, " "));
         return ++listed != options.limit && !interrupted();
     });
-    return !interrupted();
+    if (!interrupted())
+        return;
+    output.add({{"experiment", "corners"}, {"file", file}, {"corners_listed", listed}, {"complete", false}});
+    if (!options.output.records_only())
+        fmt::print("{}: interrupted after {} corners\n", file, listed);
+    throw Interrupted{};
 }
 
 } // namespace
@@ -84,37 +90,58 @@ bool list_corners(const std::string& file, WeightSpace space, const CornersOptio
 int corners(const CornersOptions& options)
 {
     require_default_arithmetic();
-    catch_interrupt();
     RecordOutput output(options.output, provenance(1, 0));
+    for (const std::string& file : options.files)
+        guard_input(file);
+    catch_interrupt();
     int status = 0;
-    for (const std::string& file : options.files) {
-        if (interrupted())
-            break;
-        try {
-            const Case problem = read_case(file);
-            const bool feasible = exact::is_feasible(problem.space());
-            const exact::CornerCount count = exact::count_corners(problem.space());
-            std::vector<Row> rows;
-            for (const std::vector<double>& b : problem.b) {
-                Row row{std::nullopt, toolkit_bound(problem.space(), b)};
-                row.answer = exact::answer(problem.space(), b, row.bound);
-                if (row.answer && !row.answer->bound_holds)
-                    status = std::max(status, 1);
-                rows.push_back(std::move(row));
-            }
-            output.add(record_of(file, problem, feasible, count, rows));
-            if (!options.output.records_only())
-                print_text(file, feasible, count, rows);
-            if (options.list && !list_corners(file, problem.space(), options))
-                break;
-        } catch (const InputError& error) {
-            std::fflush(stdout);
-            fmt::print(stderr, "cinch: {}\n", error.what());
-            status = 2;
+    std::size_t done = 0;
+    auto answer = [&](const std::string& file) {
+        const Case problem = read_case(file);
+        const bool feasible = exact::is_feasible(problem.space());
+        const exact::CornerCount count = exact::count_corners(problem.space());
+        std::vector<Row> rows;
+        for (const std::vector<double>& b : problem.b) {
+            throw_if_interrupted();
+            Row row{std::nullopt, toolkit_bound(problem.space(), b)};
+            row.answer = exact::answer(problem.space(), b, row.bound);
+            if (row.answer && !row.answer->bound_holds)
+                status = std::max(status, 1);
+            rows.push_back(std::move(row));
         }
+        output.add(record_of(file, problem, feasible, count, rows));
+        if (!options.output.records_only())
+            print_text(file, feasible, count, rows);
+        if (options.list)
+            list_corners(file, problem.space(), options, output);
+    };
+    try {
+        for (const std::string& file : options.files) {
+            throw_if_interrupted();
+            try {
+                answer(file);
+            } catch (const InputError& error) {
+                std::fflush(stdout);
+                fmt::print(stderr, "cinch: {}\n", error.what());
+                status = 2;
+            }
+            ++done;
+        }
+    } catch (const Interrupted&) { // files before it are kept
     }
+    const bool is_complete = done == options.files.size();
+    const Completeness completeness{0, 0, is_complete, is_complete ? "" : interrupted_after(done, options.files.size(), "files")};
+    output.set(completeness);
+    if (!is_complete) // those that came before had no way to know
+        output.add({{"experiment", "corners"}, {"files_done", done}, {"files", options.files.size()}});
     output.finish();
-    return interrupted() ? 130 : status;
+    if (is_complete)
+        return status;
+    if (!options.output.records_only())
+        fmt::print("{}\n", completeness.note);
+    std::fflush(stdout);
+    fmt::print(stderr, "cinch: {}\n", completeness.note);
+    return status == 1 ? 1 : 130;
 }
 
 } // namespace cinch

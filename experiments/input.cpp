@@ -6,8 +6,11 @@
 
 #include <fmt/format.h>
 
+#include "experiments/guard_surface.hpp"
+#include "experiments/report/interrupt.hpp"
 #include "experiments/report/number.hpp"
 #include "experiments/report/progress.hpp"
+#include "experiments/report/whole_file.hpp"
 #include "experiments/simulation/find_scene.hpp"
 #include "toolkit/deform/motion.hpp"
 #include "toolkit/deform/sample_nodes.hpp"
@@ -147,7 +150,8 @@ Inputs load_scene(const InputOptions& options)
         throw InputError(fmt::format("{} is a scene: --motion, --support, --weights and --transforms do not apply", options.input));
     SceneChanges changes;
     changes.nodes = options.nodes;
-    const FoundScene found = find_scene(options.input, changes);
+    FoundScene found = find_scene(options.input, changes);
+    found.scene.integration.cancelled = interrupted;
     Simulation simulation(found.scene, found.file);
     Inputs inputs{options.input, {}, {}};
     std::vector<std::size_t> chosen;
@@ -179,9 +183,12 @@ Inputs load_scene(const InputOptions& options)
         Progress progress("simulating frames", last);
         for (std::size_t f = 1; f <= last; ++f) {
             const std::vector<StepReport> steps = simulation.advance();
+            throw_if_interrupted();
             for (std::size_t b = 0; b < steps.size(); ++b)
                 if (!steps[b].failure.empty())
-                    throw std::runtime_error(fmt::format("{}: body '{}' at {:.6g} s: {}", options.input, simulation.bodies()[b].name, simulation.time_s(), steps[b].failure));
+                    throw InputError(fmt::format("{}: the scene cannot be simulated: body '{}' at {:.6g} s: {}; a shorter \"step\" in its integration may do it, and 'cinch simulate {}' "
+                                                 "shows how far it comes",
+                                                 options.input, simulation.bodies()[b].name, simulation.time_s(), steps[b].failure, options.input));
             if (options.last_frames ? f + wanted > last : f * wanted / last != (f - 1) * wanted / last)
                 record();
             progress.done(f);
@@ -231,6 +238,9 @@ Input load_input(const InputOptions& options)
     }
     Input input;
     input.name = options.input;
+    guard_surface(options.input);
+    for (const std::string& file : {options.weights, options.transforms})
+        guard_input(file);
     if (auto shape = named_shape(options.input)) {
         if (!options.weights.empty() || !options.transforms.empty())
             throw InputError("--weights and --transforms need a mesh file");

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <system_error>
 
 #include <fmt/format.h>
 
+#include "exact/check_failed.hpp"
 #include "experiments/command_line.hpp"
+#include "experiments/report/interrupt.hpp"
 #include "experiments/report/provenance.hpp"
 #include "toolkit/bounds/kernel/bound_kernel.hpp"
 #include "toolkit/surface/input_error.hpp"
@@ -14,17 +17,60 @@ namespace {
 
 using namespace cinch;
 
-constexpr int bad_input = 2;
+constexpr int refuted = 1, bad_input = 2, stopped = 130;
+
+/// The exit status of what runs, and one line on standard error where it throws: 1 for a verdict and nothing else, 2 for all that keeps a command from
+/// reaching one.
+template <class Run> int status_of(const Run& run)
+{
+    auto refuse = [](const std::string& why) {
+        fmt::print(stderr, "cinch: {}\n", why);
+        return bad_input;
+    };
+    try {
+        const int status = run();
+        if (std::fflush(stdout) != 0 || std::ferror(stdout))
+            return refuse("the results could not be written; is the disk full?");
+        return status == stopped ? interrupt_status() : status;
+    } catch (const Interrupted&) {
+        fmt::print(stderr, "cinch: interrupted before there was a result\n");
+        return interrupt_status();
+    } catch (const CheckFailed& error) {
+        fmt::print(stderr, "cinch: a check failed: {}\n", error.what());
+        return refuted;
+    } catch (const InputError& error) {
+        return refuse(error.what());
+    } catch (const std::filesystem::filesystem_error& error) {
+        return refuse(fmt::format("{}: {}; check the name, the disk and the permissions", error.path1().string(), error.code().message()));
+    } catch (const std::system_error& error) { // thrown by the print functions when their buffer overflows into a full disk, for one
+        return refuse(fmt::format("the system refused: {}; is the disk full, or a limit reached?", error.what()));
+    } catch (const std::bad_alloc&) {
+        return refuse("out of memory; fewer --frames, or larger leaves (--leaf), take less");
+    } catch (const std::length_error& error) {
+        return refuse(fmt::format("too large: {}", error.what()));
+    } catch (const std::exception& error) {
+        return refuse(fmt::format("cannot be computed: {}; nothing is said of any bound", error.what()));
+    }
+}
 
 } // namespace
 
 int main(int argc, char** argv)
 {
+    end_on_interrupt();
     CLI::App app{"cinch: tight, proven bounds for surfaces deformed by few simulation nodes", "cinch"};
     app.require_subcommand(1);
     app.set_version_flag("--version", describe(provenance(0, 0)).substr(0, describe(provenance(0, 0)).find(',')));
     app.footer("'cinch COMMAND --help' says more, with examples. CINCH_TARGET=NAME forces the\n"
-               "instruction set of the kernels, for example CINCH_TARGET=AVX2.");
+               "instruction set of the kernels, for example CINCH_TARGET=AVX2.\n"
+               "\n"
+               "Exit status:\n"
+               "  0    done, and all that was checked holds\n"
+               "  1    a verdict: a bound is refuted, or a check or a step failed; nothing else\n"
+               "  2    no verdict: bad usage or input, a full disk, too little memory\n"
+               "  130  interrupted (Ctrl-C; 143 by SIGTERM): results so far are printed and say\n"
+               "       that they are not all; a second Ctrl-C ends the command at once\n"
+               "Files appear when they are whole; until then NAME.XXXXXX.part stands beside them.");
     ScalingOptions scaling_options;
 #ifdef CINCH_EXACT
     VerifyOptions verify_options;
@@ -108,27 +154,9 @@ int main(int argc, char** argv)
     } catch (const CLI::Success& success) { // --help, --version
         return app.exit(success);
     } catch (const CLI::ParseError& error) {
-        fmt::print(stderr, "cinch: {} (see 'cinch --help')\n", error.what());
+        const bool of_command = argv[1][0] != '-'; // a known one, by now
+        fmt::print(stderr, "cinch: {} (see 'cinch {}--help')\n", error.what(), of_command ? std::string(argv[1]) + " " : "");
         return bad_input;
     }
-    try {
-        const int status = run(app);
-        if (std::fflush(stdout) != 0 || std::ferror(stdout)) {
-            fmt::print(stderr, "cinch: the results could not be written; is the disk full?\n");
-            return bad_input;
-        }
-        return status;
-    } catch (const InputError& error) {
-        fmt::print(stderr, "cinch: {}\n", error.what());
-        return bad_input;
-    } catch (const std::system_error& error) { // thrown by the print functions when their buffer overflows into a full disk
-        fmt::print(stderr, "cinch: the results could not be written: {}\n", error.what());
-        return bad_input;
-    } catch (const std::bad_alloc&) {
-        fmt::print(stderr, "cinch: out of memory\n");
-        return bad_input;
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "cinch: a check failed: {}\n", error.what());
-        return 1;
-    }
+    return status_of([&] { return run(app); });
 }

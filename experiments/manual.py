@@ -50,6 +50,7 @@ def preformatted(text):
 def manual(program):
     version = subprocess.run([program, "--version"], check=True, capture_output=True, text=True).stdout.split()[1]
     title, _, sections, footer = parsed(help_of(program))
+    footer, status = footer.split("\n\nExit status:\n")
     commands = entries_of(sections, {"Subcommands"})
     out = [f'.TH CINCH 1 "" "cinch {version}" "User Commands"\n.SH NAME\n{roff(title.replace(": ", " - ", 1))}\n',
            ".SH SYNOPSIS\n.B cinch\n.I COMMAND\n[\\fIOPTIONS\\fR]\n.br\n.B cinch\n.I COMMAND\n.B \\-\\-help\n",
@@ -64,6 +65,7 @@ def manual(program):
             if not entry.startswith("-h,"):
                 out.append(f".TP\n.B {roff(entry)}\n{roff(description)}\n")
         out.append(".PP\n" + preformatted(footer))
+    out.append(".SH EXIT STATUS\n" + preformatted(status))
     return "".join(out)
 
 

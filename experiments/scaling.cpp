@@ -69,8 +69,10 @@ template <class T> Times measure(const Input& input, const ScalingOptions& optio
     const RestSpheres spheres = rest_spheres(bvh, input.surface);
     BoundScratch scratch;
     std::map<std::string, Kernel<T>> kernels;
-    for (const Method method : {Method::convex, Method::eq12, Method::limited, Method::local, Method::support, Method::linear, Method::best})
+    for (const Method method : {Method::convex, Method::eq12, Method::limited, Method::local, Method::support, Method::linear, Method::best}) {
+        throw_if_interrupted();
         kernels.try_emplace(std::string(name_of(method)), bvh, input.surface, frame, method, Rounding::proven, options.passes);
+    }
     kernels.try_emplace("unproven", bvh, input.surface, frame, Method::best, Rounding::plain, options.passes);
 
     std::vector<std::function<void()>> calls;
@@ -130,6 +132,9 @@ std::vector<Figure> figures_of(const Times (&times)[3][3])
     return figures;
 }
 
+// Each size is measured in one frame.
+Completeness completeness_in_sizes(std::size_t done, std::size_t wanted) { return {done, wanted, done == wanted, done == wanted ? "" : interrupted_after(done, wanted, "sizes")}; }
+
 // Rows of what was measured, for people.
 void print_rows(const std::vector<nlohmann::ordered_json>& records)
 {
@@ -150,19 +155,28 @@ int scaling_of(const ScalingOptions& options, const Provenance& from, RecordOutp
     what.seed = options.seed;
     Input input = load_input(what);
     const bool fixed = input.simulation_nodes_fixed;
-    for (std::size_t i = 0; i < (fixed ? 1 : std::size(node_counts)) && !interrupted(); ++i) {
-        if (!fixed) {
-            what.nodes = node_counts[i];
-            input = load_input(what);
+    const std::size_t wanted = fixed ? 1 : std::size(node_counts);
+    catch_interrupt();
+    try {
+        for (std::size_t i = 0; i < wanted; ++i) {
+            throw_if_interrupted();
+            if (!fixed) {
+                what.nodes = node_counts[i];
+                input = load_input(what);
+            }
+            const Times times = options.precision == Precision::float32 ? measure<float>(input, options) : measure<double>(input, options);
+            for (const std::string& name : contestants)
+                records.push_back({{"experiment", "scaling"}, {"input", input.name}, {"method", name}, {"precision", name_of(options.precision)},
+                                   {"n", input.surface.weights.node_count}, {"vertices", input.surface.mesh.vertices.size()}, {"ns_per_bound", times.ns.at(name)}, {"frames_done", 1}, {"frames", 1}});
         }
-        const Times times = options.precision == Precision::float32 ? measure<float>(input, options) : measure<double>(input, options);
-        for (const std::string& name : contestants)
-            records.push_back({{"experiment", "scaling"}, {"input", input.name}, {"method", name}, {"precision", name_of(options.precision)},
-                               {"n", input.surface.weights.node_count}, {"vertices", input.surface.mesh.vertices.size()}, {"ns_per_bound", times.ns.at(name)}});
+    } catch (const Interrupted&) { // sizes before it are kept
     }
+    const Completeness completeness = completeness_in_sizes(records.size() / contestants.size(), wanted);
+    output.set(completeness);
     output.add_all(records);
     output.finish();
     if (!options.output.records_only()) {
+        print_note(completeness);
         for (const std::string& line : input.report)
             fmt::print("{}\n", line);
         fmt::print("\nTime of one bound of the whole surface (six directions), {}\n\n", name_of(options.precision));
@@ -170,8 +184,8 @@ int scaling_of(const ScalingOptions& options, const Provenance& from, RecordOutp
         fmt::print("\n{}\n", describe(from));
         std::fflush(stdout);
     }
-    if (interrupted()) {
-        fmt::print(stderr, "cinch: interrupted after {} sizes\n", records.size() / contestants.size());
+    if (!completeness.complete) {
+        fmt::print(stderr, "cinch: {}\n", completeness.note);
         return 130;
     }
     return 0;
@@ -184,17 +198,16 @@ int scaling(const ScalingOptions& options)
     const Provenance from = provenance(1, options.seed);
     RecordOutput output(options.output, from);
     pin_to_one_core();
-    catch_interrupt();
     if (!options.input.empty())
         return scaling_of(options, from, output);
+    catch_interrupt();
     Times times[3][3];
     std::vector<nlohmann::ordered_json> records;
-    {
+    try {
         Progress progress("measuring sizes", 9);
         for (std::size_t v = 0; v < 3; ++v)
             for (std::size_t n = 0; n < 3; ++n) {
-                if (interrupted())
-                    break;
+                throw_if_interrupted();
                 InputOptions what;
                 what.input = sizes[v].shape;
                 what.nodes = node_counts[n];
@@ -204,21 +217,25 @@ int scaling(const ScalingOptions& options)
                 times[v][n] = options.precision == Precision::float32 ? measure<float>(input, options) : measure<double>(input, options);
                 for (const std::string& name : contestants)
                     records.push_back({{"experiment", "scaling"}, {"method", name}, {"precision", name_of(options.precision)}, {"n", node_counts[n]},
-                                       {"vertices", sizes[v].vertices}, {"ns_per_bound", times[v][n].ns.at(name)},
+                                       {"vertices", sizes[v].vertices}, {"ns_per_bound", times[v][n].ns.at(name)}, {"frames_done", 1}, {"frames", 1},
                                        {"paper_us", sizes[v].paper_us(name == "optimal" ? name : std::to_string(node_counts[n]))}});
                 progress.done(3 * v + n + 1);
             }
+    } catch (const Interrupted&) { // sizes before it are kept
     }
-    const bool whole = records.size() == 9 * contestants.size();
-    if (whole)
+    const Completeness completeness = completeness_in_sizes(records.size() / contestants.size(), 9);
+    if (completeness.complete)
         for (const Figure& f : figures_of(times))
             records.push_back({{"experiment", "scaling"}, {"figure", f.what}, {"measured", f.measured}, {"target", f.target}, {"reached", f.reached}});
+    output.set(completeness);
     output.add_all(records);
     output.finish();
-    if (!whole) {
-        if (!options.output.records_only())
+    if (!completeness.complete) {
+        if (!options.output.records_only()) {
+            print_note(completeness);
             print_rows(records);
-        fmt::print(stderr, "cinch: interrupted after {} of 9 sizes\n", records.size() / contestants.size());
+        }
+        fmt::print(stderr, "cinch: {}\n", completeness.note);
         return 130;
     }
     if (options.output.records_only())

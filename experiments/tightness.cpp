@@ -31,7 +31,10 @@ struct LevelRatio {
 struct Run { ///< one motion and number of nodes
     std::string motion;
     std::size_t nodes = 0;
-    std::map<std::string, std::vector<LevelRatio>> levels; ///< by method
+    std::size_t frames_done = 0, frames = 0;
+    std::map<std::string, std::vector<LevelRatio>> levels; ///< by method, of the frames done
+
+    bool is_complete() const { return frames_done == frames; }
 };
 
 const std::vector<Methods> usual = {Method::sphere, Method::eq12, Method::limited, Method::local, Method::support, Method::linear, Method::best};
@@ -41,53 +44,65 @@ double radius(std::span<const double> supports)
     return 0.5 * std::hypot(supports[0] + supports[1], supports[2] + supports[3], supports[4] + supports[5]);
 }
 
-// Ratios of every level and method; with `attribute` also by the exact verifier what is lost where.
+void add_frame(const Bvh& bvh, std::span<const double> truth, std::span<const double> supports, const exact::FrameVerdict* verdict, std::vector<LevelRatio>& levels)
+{
+    levels.resize(bvh.level.size() - 1);
+    for (std::size_t l = 0; l < levels.size(); ++l) {
+        levels[l].bvs = bvh.level[l + 1] - bvh.level[l];
+        for (std::size_t bv = bvh.level[l]; bv < bvh.level[l + 1]; ++bv) {
+            const double whole = radius(truth.subspan(6 * bv, 6)), ratio = radius(supports.subspan(6 * bv, 6)) / whole;
+            if (!(whole > 0 && std::isfinite(ratio)))
+                continue;
+            ++levels[l].measured;
+            levels[l].sum += ratio;
+            levels[l].max = std::max(levels[l].max, ratio);
+            if (!verdict)
+                continue;
+            const exact::Loss& loss = verdict->bvs[bv].loss;
+            levels[l].loss.box += loss.box / whole;
+            levels[l].loss.interval += loss.interval / whole;
+            levels[l].loss.corner += (loss.corner + loss.rounding) / whole;
+        }
+    }
+}
+
+// Ratios of every level and method; with `attribute` also by the exact verifier what is lost where. Frame by frame, so that after an interrupt all
+// methods have the same ones.
 Run measure(const Input& input, const TightnessOptions& options, bool attribute, bool& violated)
 {
-    Run run{input.clip.name, input.surface.weights.node_count, {}};
-    const Bvh bvh = build_bvh(input.surface, options.leaf);
     const std::size_t frames = input.clip.frames.size();
-    std::vector<double> supports(bvh.bvs.size() * 6);
-    std::vector<std::vector<double>> truth(frames);
-    Refitter vertices(bvh, input.surface, {Method::vertices, 6, Rounding::plain});
-    for (std::size_t f = 0; f < frames; ++f) {
-        vertices(input.clip.frames[f], supports);
-        truth[f] = supports;
-    }
-    std::optional<exact::Verifier> verifier;
-    if (attribute)
-        verifier.emplace(input.surface, bvh);
+    Run run{input.clip.name, input.surface.weights.node_count, 0, frames, {}};
     Progress progress(fmt::format("{} nodes, '{}'", run.nodes, run.motion), options.methods.size() * frames);
-    for (std::size_t m = 0; m < options.methods.size(); ++m) {
-        Refitter refit(bvh, input.surface, {options.methods[m], 6, Rounding::proven, options.precision, options.passes});
-        std::vector<LevelRatio>& levels = run.levels[name_of(options.methods[m])];
-        levels.resize(bvh.level.size() - 1);
-        for (std::size_t f = 0; f < frames && !interrupted(); ++f) {
-            refit(input.clip.frames[f], supports);
-            std::optional<exact::FrameVerdict> verdict;
-            if (verifier) {
-                verdict = verifier->check(input.clip.frames[f], options.methods[m], 6, supports);
-                violated |= !verdict->examples.empty();
-            }
-            for (std::size_t l = 0; l < levels.size(); ++l) {
-                levels[l].bvs = bvh.level[l + 1] - bvh.level[l];
-                for (std::size_t bv = bvh.level[l]; bv < bvh.level[l + 1]; ++bv) {
-                    const double whole = radius(std::span(truth[f]).subspan(6 * bv, 6)), ratio = radius(std::span(supports).subspan(6 * bv, 6)) / whole;
-                    if (!(whole > 0 && std::isfinite(ratio)))
-                        continue;
-                    ++levels[l].measured;
-                    levels[l].sum += ratio;
-                    levels[l].max = std::max(levels[l].max, ratio);
-                    if (!verdict)
-                        continue;
-                    const exact::Loss& loss = verdict->bvs[bv].loss;
-                    levels[l].loss.box += loss.box / whole;
-                    levels[l].loss.interval += loss.interval / whole;
-                    levels[l].loss.corner += (loss.corner + loss.rounding) / whole;
-                }
-            }
-            progress.done(m * frames + f + 1);
+    try {
+        const Bvh bvh = build_bvh(input.surface, options.leaf);
+        std::vector<double> truth(bvh.bvs.size() * 6), supports(truth);
+        std::optional<exact::Verifier> verifier;
+        if (attribute)
+            verifier.emplace(input.surface, bvh, throw_if_interrupted);
+        Refitter vertices(bvh, input.surface, {Method::vertices, 6, Rounding::plain});
+        std::vector<Refitter> refits;
+        for (const Methods methods : options.methods) {
+            throw_if_interrupted();
+            refits.emplace_back(bvh, input.surface, RefitOptions{methods, 6, Rounding::proven, options.precision, options.passes});
         }
+        for (std::size_t f = 0; f < frames; ++f) {
+            std::map<std::string, std::vector<LevelRatio>> now = run.levels; // kept if the frame is whole
+            vertices(input.clip.frames[f], truth);
+            for (std::size_t m = 0; m < options.methods.size(); ++m) {
+                throw_if_interrupted();
+                refits[m](input.clip.frames[f], supports);
+                std::optional<exact::FrameVerdict> verdict;
+                if (verifier) {
+                    verdict = verifier->check(input.clip.frames[f], options.methods[m], 6, supports);
+                    violated |= !verdict->examples.empty();
+                }
+                add_frame(bvh, truth, supports, verdict ? &*verdict : nullptr, now[name_of(options.methods[m])]);
+                progress.done(f * options.methods.size() + m + 1);
+            }
+            run.levels = std::move(now);
+            ++run.frames_done;
+        }
+    } catch (const Interrupted&) {
     }
     return run;
 }
@@ -98,14 +113,20 @@ nlohmann::ordered_json record(const Input& input, const Run& run, const std::str
     auto share = [&](double x) { return l.measured ? nlohmann::ordered_json(x / static_cast<double>(l.measured)) : nlohmann::ordered_json(); };
     nlohmann::ordered_json out{{"experiment", "tightness"}, {"input", input.name}, {"motion", run.motion}, {"method", method}, {"n", run.nodes}, {"level", level},
                                {"bvs", l.bvs}, {"mean_ratio", share(l.sum)}, {"max_ratio", l.measured ? nlohmann::ordered_json(l.max) : nlohmann::ordered_json()}};
+    out.update({{"frames_done", run.frames_done}, {"frames", run.frames}, {"complete", run.is_complete()}});
     if (attributed)
         out.update({{"box_loss", share(l.loss.box)}, {"interval_loss", share(l.loss.interval)}, {"method_loss", share(l.loss.corner)}});
     return out;
 }
 
+std::string frames_of(const Run& run)
+{
+    return run.is_complete() ? counted(run.frames, "frame", "frames") : interrupted_after(run.frames_done, run.frames, "frames");
+}
+
 void print_levels(const Run& run, const std::vector<std::string>& names)
 {
-    fmt::print("motion '{}', {}: mean ratio by level\n\n", run.motion, counted(run.nodes, "simulation node", "simulation nodes"));
+    fmt::print("motion '{}', {}, {}: mean ratio by level\n\n", run.motion, counted(run.nodes, "simulation node", "simulation nodes"), frames_of(run));
     std::vector<std::string> header{"level", "BVs"};
     header.insert(header.end(), names.begin(), names.end());
     std::vector<std::vector<std::string>> means, greatest;
@@ -119,20 +140,21 @@ void print_levels(const Run& run, const std::vector<std::string>& names)
         means.push_back(row);
         greatest.push_back(most);
     }
-    fmt::print("{}\ngreatest ratio by level\n\n{}\n", table(header, means), table(header, greatest));
+    const std::string part = run.is_complete() ? "" : ", " + frames_of(run);
+    fmt::print("{}\ngreatest ratio by level{}\n\n{}\n", table(header, means), part, table(header, greatest));
     const auto& last = run.levels.at(names.back());
     std::vector<std::vector<std::string>> rows;
     for (std::size_t l = 0; l < last.size(); ++l) {
         auto share = [&](double x) { return last[l].measured ? fmt::format("{:.3f}", x / static_cast<double>(last[l].measured)) : "-"; };
         rows.push_back({std::to_string(l), share(last[l].loss.box), share(last[l].loss.interval), share(last[l].loss.corner)});
     }
-    fmt::print("what '{}' gives away, per direction, as a share of the true radius\n\n{}\n", names.back(), table({"level", "box", "interval", "method"}, rows));
+    fmt::print("what '{}' gives away, per direction, as a share of the true radius{}\n\n{}\n", names.back(), part, table({"level", "box", "interval", "method"}, rows));
 }
 
 void add_figures(const Run& run, std::vector<Figure>& figures)
 {
     const auto best = run.levels.find("best");
-    if (best == run.levels.end() || (run.motion != "strong" && run.motion != "mild"))
+    if (!run.is_complete() || best == run.levels.end() || (run.motion != "strong" && run.motion != "mild"))
         return;
     double worst = 0;
     for (const LevelRatio& level : best->second)
@@ -146,6 +168,84 @@ void add_figures(const Run& run, std::vector<Figure>& figures)
         figures.push_back({"'strong': sphere over best at the root, mean", fmt::format("{:.1f}", times), ">= 50", times >= 50});
         figures.push_back({"'strong': sphere at most over best", fmt::format("{:.1f}", most), "-", true});
     }
+}
+
+// What is measured, and what was so far.
+struct Measured {
+    std::vector<std::string> names, motions;
+    std::vector<std::size_t> nodes;
+    std::vector<Run> full, sweep; ///< of each motion; of each number of nodes, under the first motion
+    bool violated = false;
+
+    // Of what was interrupted before its first frame nothing is kept: neither rows nor columns.
+    void keep(Run&& run, std::vector<Run>& runs)
+    {
+        if (run.frames_done > 0)
+            runs.push_back(std::move(run));
+    }
+    Completeness completeness(std::size_t frames) const
+    {
+        const std::size_t wanted = motions.size() + nodes.size();
+        std::size_t whole = 0, done = 0;
+        for (const auto* runs : {&full, &sweep})
+            for (const Run& run : *runs) {
+                whole += run.is_complete();
+                done += run.frames_done;
+            }
+        Completeness out{done, wanted * frames, whole == wanted, ""};
+        if (!out.complete)
+            out.note = interrupted_after(done, wanted * frames, fmt::format("frames ({} of {})", whole, counted(wanted, "motion or number of nodes", "motions and numbers of nodes")));
+        return out;
+    }
+};
+
+void measure_all(const TightnessOptions& options, Measured& measured)
+{
+    InputOptions what = options.input;
+    for (const std::string& motion : measured.motions) {
+        throw_if_interrupted();
+        what.motion = motion;
+        measured.keep(measure(load_input(what), options, true, measured.violated), measured.full);
+    }
+    TightnessOptions coarse = options;
+    coarse.leaf = std::max<std::size_t>(options.leaf, 16); // what counts here is the upper levels
+    what.motion = measured.motions[0];
+    for (const std::size_t nodes : measured.nodes) {
+        throw_if_interrupted();
+        what.nodes = nodes;
+        measured.keep(measure(load_input(what), coarse, false, measured.violated), measured.sweep);
+    }
+}
+
+void print_tables(const Measured& measured, const std::vector<Figure>& figures, const Completeness& completeness, const Input& first, const TightnessOptions& options, const Provenance& from)
+{
+    print_note(completeness);
+    for (const std::string& line : first.report)
+        fmt::print("{}\n", line);
+    fmt::print("bounds in {}, AABBs, at most {} per leaf; radius: half diagonal\n\n", name_of(options.precision), counted(options.leaf, "triangle", "triangles"));
+    for (const Run& run : measured.full)
+        print_levels(run, measured.names);
+    if (const std::vector<Run>& sweep = measured.sweep; !sweep.empty()) {
+        const std::vector<std::string>& names = measured.names;
+        std::vector<std::string> header{"n"};
+        header.insert(header.end(), names.begin(), names.end());
+        std::vector<std::vector<std::string>> rows;
+        for (const Run& run : sweep) {
+            std::vector<std::string> row{std::to_string(run.nodes)};
+            for (const std::string& name : names)
+                row.push_back(fmt::format("{:.3f}", run.levels.at(name)[0].mean()));
+            rows.push_back(row);
+        }
+        const std::string part = sweep.size() < measured.nodes.size() ? ", " + interrupted_after(sweep.size(), measured.nodes.size(), "rows")
+                                 : sweep.back().is_complete()       ? ""
+                                                                    : ", the last row " + frames_of(sweep.back());
+        fmt::print("motion '{}': mean ratio of the root against simulation nodes{}\n\n{}\n", measured.motions[0], part, table(header, rows));
+    }
+    fmt::print("box: extrema at the vertices' actual weights; interval: weight intervals; method:\n"
+               "all else, negative where the method knows more of the weights than intervals do.\n"
+               "The paper's root: 1.5 on average, 2.5 at most, up to 68 times tighter than spheres.\n\n");
+    print(figures);
+    fmt::print("\n{}\n", describe(from));
 }
 
 } // namespace
@@ -162,8 +262,6 @@ int tightness(const TightnessOptions& given)
         names.push_back(name_of(methods));
     const Provenance from = provenance(threads, options.input.seed);
     RecordOutput output(options.output, from);
-    catch_interrupt();
-
     const Input first = load_input(options.input);
     const bool scripted = !first.simulation_nodes_fixed;
     if (!options.nodes.empty() && !scripted)
@@ -176,72 +274,44 @@ int tightness(const TightnessOptions& given)
     else if (options.nodes.empty() && scripted)
         options.nodes = {8, 16, 32, 65, 128, 225, 512};
 
+    catch_interrupt();
+    Measured measured{names, motions, options.nodes, {}, {}};
+    try {
+        measure_all(options, measured);
+    } catch (const Interrupted&) { // what was measured is kept
+    }
+    const Completeness completeness = measured.completeness(first.clip.frames.size());
     std::vector<nlohmann::ordered_json> records;
-    std::vector<Run> full, sweep;
-    bool violated = false;
-    for (const std::string& motion : motions) {
-        InputOptions what = options.input;
-        what.motion = motion;
-        const Input input = load_input(what);
-        full.push_back(measure(input, options, true, violated));
-        for (const std::string& name : names)
-            for (std::size_t l = 0; l < full.back().levels.at(name).size(); ++l)
-                records.push_back(record(input, full.back(), name, l, true));
-    }
-    for (const std::size_t nodes : options.nodes) {
-        if (interrupted())
-            break;
-        InputOptions what = options.input;
-        what.motion = motions[0];
-        what.nodes = nodes;
-        const Input input = load_input(what);
-        TightnessOptions coarse = options;
-        coarse.leaf = std::max<std::size_t>(options.leaf, 16); // what counts here is the upper levels
-        sweep.push_back(measure(input, coarse, false, violated));
-        for (const std::string& name : names)
-            for (std::size_t l = 0; l < sweep.back().levels.at(name).size(); ++l)
-                records.push_back(record(input, sweep.back(), name, l, false));
-    }
+    for (const auto* runs : {&measured.full, &measured.sweep})
+        for (const Run& run : *runs)
+            for (const std::string& name : names)
+                for (std::size_t l = 0; l < run.levels.at(name).size(); ++l)
+                    records.push_back(record(first, run, name, l, runs == &measured.full));
     std::vector<Figure> figures;
-    for (const Run& run : full)
+    for (const Run& run : measured.full)
         add_figures(run, figures);
-    if (const auto best = std::find(names.begin(), names.end(), "best"); best != names.end() && sweep.size() > 1) {
+    if (const auto best = std::find(names.begin(), names.end(), "best"); best != names.end() && completeness.complete && measured.sweep.size() > 1) {
+        const std::vector<Run>& sweep = measured.sweep;
         const double few = sweep.front().levels.at("best")[0].mean(), many = sweep.back().levels.at("best")[0].mean();
         figures.push_back({fmt::format("root ratio of best, n = {} / n = {}", sweep.back().nodes, sweep.front().nodes), fmt::format("{:.3f}", many / few), "< 1", many < few});
     }
     for (const Figure& f : figures)
         records.push_back({{"experiment", "tightness"}, {"input", first.name}, {"figure", f.what}, {"measured", f.measured}, {"target", f.target}, {"reached", f.reached}});
+    output.set(completeness);
     output.add_all(records);
     output.finish();
-    if (!options.output.records_only()) {
-        for (const std::string& line : first.report)
-            fmt::print("{}\n", line);
-        fmt::print("bounds in {}, AABBs, at most {} per leaf; radius: half diagonal\n\n", name_of(options.precision), counted(options.leaf, "triangle", "triangles"));
-        for (const Run& run : full)
-            print_levels(run, names);
-        if (!sweep.empty()) {
-            std::vector<std::string> header{"n"};
-            header.insert(header.end(), names.begin(), names.end());
-            std::vector<std::vector<std::string>> rows;
-            for (const Run& run : sweep) {
-                std::vector<std::string> row{std::to_string(run.nodes)};
-                for (const std::string& name : names)
-                    row.push_back(fmt::format("{:.3f}", run.levels.at(name)[0].mean()));
-                rows.push_back(row);
-            }
-            fmt::print("motion '{}': mean ratio of the root against simulation nodes\n\n{}\n", motions[0], table(header, rows));
-        }
-        fmt::print("box: extrema at the vertices' actual weights; interval: weight intervals; method:\n"
-                   "all else, negative where the method knows more of the weights than intervals do.\n"
-                   "The paper's root: 1.5 on average, 2.5 at most, up to 68 times tighter than spheres.\n\n");
-        print(figures);
-        fmt::print("\n{}\n", describe(from));
-    }
-    if (violated) {
+    if (!options.output.records_only())
+        print_tables(measured, figures, completeness, first, options, from);
+    if (measured.violated) {
         fmt::print(stderr, "cinch: a bound is violated; 'cinch verify' says which\n");
         return 1;
     }
-    return interrupted() ? 130 : 0;
+    if (!completeness.complete) {
+        std::fflush(stdout);
+        fmt::print(stderr, "cinch: {}\n", completeness.note);
+        return 130;
+    }
+    return 0;
 }
 
 } // namespace cinch

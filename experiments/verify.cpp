@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 
 #include <fmt/format.h>
@@ -16,6 +15,7 @@
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/line_file.hpp"
 #include "experiments/report/progress.hpp"
+#include "experiments/report/whole_file.hpp"
 #include "experiments/verify_lazy.hpp"
 #include "experiments/verify_report.hpp"
 #include "toolkit/deform/dyadic.hpp"
@@ -78,39 +78,37 @@ void explain_last_frame(const Input& input, const Bvh& bvh, const VerifyOptions&
         return exact::OneBound{input.surface, bvh, maps, options.methods, options.kdop, bv, direction,
                                supports[bv * static_cast<std::size_t>(options.kdop) + static_cast<std::size_t>(direction)]};
     };
-    for (int d = 0; (options.output.json || !options.output.report.empty()) && d < options.kdop; ++d)
+    for (int d = 0; (options.output.json || !options.output.report.empty()) && d < options.kdop; ++d) {
+        throw_if_interrupted();
         if (const exact::OneBound root = place(0, d); std::isfinite(root.bound))
             totals.root.push_back({d, root.bound, exact::exact_loss(root)});
+    }
     if (options.vipr.empty())
         return;
-    std::filesystem::create_directories(options.vipr);
     for (std::size_t level = 0; level < totals.levels.size(); ++level)
-        for (int d = 0; d < options.kdop; ++d)
+        for (int d = 0; d < options.kdop; ++d) {
+            throw_if_interrupted();
             if (const exact::OneBound bound = place(bvh.level[level], d); std::isfinite(bound.bound)) {
                 const auto path = std::filesystem::path(options.vipr) / fmt::format("bv{}-d{}.vipr", bound.bv, d);
-                std::ofstream out(path);
-                out << exact::vipr(bound);
-                if (!out.flush())
-                    throw InputError::in_file(path.string(), "cannot be written");
+                write_whole(path, exact::vipr(bound));
             }
+        }
 }
 
-// Refits and proves every BV of one body in every frame, on top of what `totals` has.
+// Refits and proves every BV of one body in every frame, on top of what `totals` has. An interrupt ends it between two frames: `totals` has whole ones.
 void verify_body(const Input& input, const VerifyOptions& options, LineFile* certificate, VerifyTotals& totals)
 {
     Bvh bvh = build_bvh(input.surface, options.leaf);
     damage(bvh, options.sabotage);
     const Rounding rounding = options.sabotage == Sabotage::no_rounding ? Rounding::plain : Rounding::proven;
-    const exact::Verifier verifier(input.surface, bvh);
+    const exact::Verifier verifier(input.surface, bvh, throw_if_interrupted);
     const RefitOptions refit_options{options.methods, options.kdop, rounding, options.precision, options.passes, options.rest_shape, options.remember};
     Refitter refit(bvh, input.surface, refit_options);
+    throw_if_interrupted();
     Ladder ladder(bvh, input.surface, refit_options);
     totals.packed_bytes += refit.bytes();
     totals.rest_bytes += bvh.bytes();
 
-    add_levels(bvh, totals);
-    if (options.volume && totals.volumes.size() < totals.levels.size())
-        totals.volumes.resize(totals.levels.size());
     const exact::LineSink write = [&](std::string_view text) { certificate->line(text); };
     if (certificate)
         exact::certify_rest(input.surface, bvh, options.methods, options.kdop, input.clip.frames.size(), write, options.rest_shape);
@@ -119,17 +117,25 @@ void verify_body(const Input& input, const VerifyOptions& options, LineFile* cer
     Progress progress("verifying frames", totals.frames_wanted);
     std::vector<double> supports(bvh.bvs.size() * static_cast<std::size_t>(options.kdop));
     for (const auto& maps : input.clip.frames) {
-        if (interrupted())
-            break;
-        totals.unbounded_nodes += refit(maps, supports).unbounded_nodes;
+        throw_if_interrupted();
+        const std::size_t unbounded = refit(maps, supports).unbounded_nodes;
         const exact::FrameVerdict verdict = verifier.check(maps, options.methods, options.kdop, supports, options.rest_shape);
+        std::vector<VolumeTotals> volumes = totals.volumes; // kept with their frame
+        if (options.volume) {
+            volumes.resize(std::max(volumes.size(), bvh.level.size() - 1));
+            add_volumes(input.surface, bvh, maps, options.kdop, supports, volumes);
+        }
+        LadderTotals compared = totals.ladder;
+        ladder.check(maps, compared);
         if (certificate)
             exact::certify_frame(totals.frames, maps, options.methods, options.kdop, supports, verdict, write, options.rest_shape);
+        if (totals.frames == before)
+            add_levels(bvh, totals);
         add(bvh, verdict, options.kdop, {}, totals);
+        totals.unbounded_nodes += unbounded;
+        totals.volumes = std::move(volumes);
+        totals.ladder = compared;
         totals.infinite += static_cast<std::size_t>(std::count_if(supports.begin(), supports.end(), [](double s) { return std::isinf(s); }));
-        if (options.volume)
-            add_volumes(input.surface, bvh, maps, options.kdop, supports, totals.volumes);
-        ladder.check(maps, totals.ladder);
         progress.done(totals.frames);
     }
     if (totals.frames > before)
@@ -150,39 +156,55 @@ int verify(const VerifyOptions& given)
         throw InputError("--vipr needs methods that bound over weights and the BV's own box: convex, corners, eq12, limited");
     const Provenance from = provenance(threads, options.input.seed);
     RecordOutput output(options.output, from);
+    std::optional<LineFile> certificate;
+    if (!options.certificate.empty())
+        certificate.emplace(options.certificate);
     const Inputs inputs = load_inputs(options.input);
     if (inputs.bodies.size() > 1 && (!options.certificate.empty() || !options.vipr.empty()))
         throw InputError("--certificate and --vipr are of one body; --body chooses it");
     VerifyTotals totals;
     for (const Input& input : inputs.bodies)
         totals.frames_wanted += input.clip.frames.size();
-    std::optional<LineFile> certificate;
-    if (!options.certificate.empty())
-        certificate.emplace(options.certificate);
+    if (!options.vipr.empty())
+        std::filesystem::create_directories(options.vipr);
     catch_interrupt();
     std::optional<LazyTotals> lazy;
-    if (options.update != VerifiedUpdate::refit)
-        lazy = verify_lazy(inputs, options, totals);
-    else if (options.sabotage == Sabotage::stale)
+    if (options.update != VerifiedUpdate::refit) {
+        lazy.emplace();
+        totals.at_once = inputs.bodies.size();
+    } else if (options.sabotage == Sabotage::stale) {
         throw InputError("--sabotage stale goes with --update lazy, full and front");
-    for (const Input& input : inputs.bodies)
-        if (!lazy && !interrupted())
-            verify_body(input, options, certificate ? &*certificate : nullptr, totals);
-    if (certificate)
-        certificate->close();
+    }
+    try {
+        if (lazy)
+            verify_lazy(inputs, options, totals, *lazy);
+        for (const Input& input : inputs.bodies)
+            if (!lazy)
+                verify_body(input, options, certificate ? &*certificate : nullptr, totals);
+    } catch (const Interrupted&) { // what is in `totals` is kept
+    }
+    const Completeness completeness = completeness_of(totals);
     finish(totals);
     totals.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
+    output.set(completeness);
     output.add_all(lazy ? lazy_records_of(inputs, options, totals, *lazy) : records_of(inputs, options, totals));
     output.finish();
     if (!options.output.records_only() && lazy)
         print_lazy_table(inputs, options, totals, *lazy, from);
     else if (!options.output.records_only())
         print_table(inputs, options, totals, from);
+    if (certificate && completeness.complete)
+        certificate->commit();
     if (totals.violated || totals.ladder.broken)
         return 1;
-    if (totals.frames < totals.frames_wanted) {
-        fmt::print(stderr, "cinch: interrupted after {} of {} frames\n", totals.frames, totals.frames_wanted);
+    if (!completeness.complete) {
+        std::fflush(stdout);
+        fmt::print(stderr, "cinch: {}{}\n", completeness.note, certificate ? "; " + options.certificate + " is not written: it would not prove the rest" : "");
+        return 130;
+    }
+    if (interrupted()) {
+        fmt::print(stderr, "cinch: interrupted after all frames\n");
         return 130;
     }
     return 0;

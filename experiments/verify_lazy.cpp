@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <limits>
-#include <stdexcept>
 
 #include "exact/absolute.hpp"
+#include "exact/check_failed.hpp"
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/progress.hpp"
 #include "toolkit/collide/collider.hpp"
@@ -42,7 +42,7 @@ LazyOptions lazy_options(const VerifyOptions& options)
 // One body's BVs in a frame.
 class Proof {
 public:
-    Proof(const Input& input, Bvh&& bvh) : bvh_(std::move(bvh)), verifier_(input.surface, bvh_), current_(bvh_.bvs.size()) {}
+    Proof(const Input& input, Bvh&& bvh) : bvh_(std::move(bvh)), verifier_(input.surface, bvh_, throw_if_interrupted), current_(bvh_.bvs.size()) {}
 
     const Bvh& bvh() const { return bvh_; }
 
@@ -73,7 +73,7 @@ public:
         }
         const std::size_t deformed = tree.counts().leaves; // after a full update once more where their vertices are wanted too
         if (tree.counts().merged != merged_ || (tree.fully_refitted() ? deformed < leaves : deformed != leaves) || tree.counts().bounds != current - merged_ - leaves)
-            throw std::runtime_error("the lazy update's own counts differ from the BVs that are current");
+            throw CheckFailed("the lazy update's own counts differ from the BVs that are current");
         lazy.merged += merged_;
         lazy.from_vertices += leaves;
         lazy.by_methods += current - merged_ - leaves;
@@ -96,7 +96,7 @@ private:
 
 } // namespace
 
-LazyTotals verify_lazy(const Inputs& inputs, const VerifyOptions& options, VerifyTotals& totals)
+void verify_lazy(const Inputs& inputs, const VerifyOptions& options, VerifyTotals& totals, LazyTotals& lazy)
 {
     require_fitting(inputs, options);
     const LazyOptions query_options = lazy_options(options);
@@ -107,23 +107,29 @@ LazyTotals verify_lazy(const Inputs& inputs, const VerifyOptions& options, Verif
         damage(bvh, options.sabotage);
         proofs.push_back(std::make_unique<Proof>(body, std::move(bvh)));
         collider.add(proofs.back()->bvh(), body.surface);
-        add_levels(proofs.back()->bvh(), totals);
+        throw_if_interrupted();
     }
-    LazyTotals lazy;
     Progress progress("verifying frames", totals.frames_wanted);
     std::vector<BodyFrame> frames(inputs.bodies.size());
-    for (std::size_t f = 0; f < inputs.bodies[0].clip.frames.size() && !interrupted(); ++f) {
+    for (std::size_t f = 0; f < inputs.bodies[0].clip.frames.size(); ++f) {
+        throw_if_interrupted();
         for (std::size_t b = 0; b < frames.size(); ++b)
             frames[b] = {inputs.bodies[b].clip.frames[f]};
         collider.update(frames);
         for (std::size_t b = 0; b < frames.size(); ++b)
             proofs[b]->note_merged(collider.trees()[b]);
-        lazy.pairs += collider.pairs().size();
-        for (std::size_t b = 0; b < frames.size(); ++b)
-            proofs[b]->check(collider.trees()[b], frames[b].maps, options, totals, lazy);
+        VerifyTotals now = totals; // kept if the frame is whole, all bodies of it
+        LazyTotals lazy_now = lazy;
+        lazy_now.pairs += collider.pairs().size();
+        for (std::size_t b = 0; b < frames.size(); ++b) {
+            if (f == 0)
+                add_levels(proofs[b]->bvh(), now);
+            proofs[b]->check(collider.trees()[b], frames[b].maps, options, now, lazy_now);
+        }
+        totals = std::move(now);
+        lazy = lazy_now;
         progress.done(totals.frames);
     }
-    return lazy;
 }
 
 } // namespace cinch

@@ -19,6 +19,7 @@ const char* name_of(VerifiedUpdate update)
 
 void print_lazy_table(const Inputs& input, const VerifyOptions& options, const VerifyTotals& totals, const LazyTotals& lazy, const Provenance& from)
 {
+    print_note(completeness_of(totals));
     for (const std::string& line : input.report)
         fmt::print("{}\n", line);
     const std::size_t k = static_cast<std::size_t>(options.kdop), steps = totals.frames / input.bodies.size();
@@ -68,10 +69,10 @@ std::vector<nlohmann::ordered_json> lazy_records_of(const Inputs& input, const V
         records.push_back(std::move(record));
     }
     json record = base();
-    record.update({{"frames", totals.frames / input.bodies.size()}, {"leaf_triangles", options.leaf}, {"bodies", input.bodies.size()}, {"pairs", lazy.pairs},
+    record.update({{"leaf_triangles", options.leaf}, {"bodies", input.bodies.size()}, {"pairs", lazy.pairs},
                    {"by_methods", lazy.by_methods}, {"merged", lazy.merged}, {"from_vertices", lazy.from_vertices}, {"left", lazy.left},
                    {"bounds", totals.bounds}, {"proven", totals.proven}, {"violated", totals.violated}, {"infinite", totals.infinite},
-                   {"seconds", totals.seconds}, {"complete", totals.frames == totals.frames_wanted}, {"load_report", input.report}});
+                   {"seconds", totals.seconds}, {"load_report", input.report}});
     records.push_back(std::move(record));
     return records;
 }

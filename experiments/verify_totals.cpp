@@ -21,7 +21,7 @@ void add_levels(const Bvh& bvh, VerifyTotals& totals)
 void add(const Bvh& bvh, const exact::FrameVerdict& frame, int kdop, std::span<const char> counted, VerifyTotals& totals)
 {
     const auto k = static_cast<std::size_t>(kdop);
-    for (std::size_t i = 0; i < totals.levels.size(); ++i) {
+    for (std::size_t i = 0; i + 1 < bvh.level.size(); ++i) { // another body's tree may have more
         LevelTotals& level = totals.levels[i];
         for (std::size_t bv = bvh.level[i]; bv < bvh.level[i + 1]; ++bv) {
             if (!counted.empty() && !counted[bv])

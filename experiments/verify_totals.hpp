@@ -7,6 +7,7 @@
 
 #include "exact/explain.hpp"
 #include "exact/verifier.hpp"
+#include "experiments/report/record_output.hpp"
 #include "experiments/volumes.hpp"
 
 namespace cinch {
@@ -27,13 +28,14 @@ struct LadderTotals {
 };
 
 struct VerifyTotals {
-    std::size_t frames = 0, frames_wanted = 0;
+    std::size_t frames = 0, frames_wanted = 0; ///< of every body
+    std::size_t at_once = 1;                   ///< bodies that make a frame together
     std::size_t bounds = 0, proven = 0, violated = 0, decided_by_filter = 0;
     std::size_t infinite = 0; ///< of the proven ones
     std::size_t unbounded_nodes = 0; ///< transforms too large for the arithmetic, over all frames
     double seconds = 0;
     std::size_t packed_bytes = 0, rest_bytes = 0; ///< what the kernels stream; all rest data, as the verifier reads it
-    std::vector<LevelTotals> levels;
+    std::vector<LevelTotals> levels; ///< of the bodies that have a frame proven
     LadderTotals ladder;
     std::vector<VolumeTotals> volumes; ///< per level; empty if not asked for
     struct RootLoss {
@@ -56,5 +58,7 @@ void add(const Bvh& bvh, const exact::FrameVerdict& frame, int kdop, std::span<c
 void add_levels(const Bvh& bvh, VerifyTotals& totals);
 /// Sums of the levels.
 void finish(VerifyTotals& totals);
+/// What its records and tables are of.
+inline Completeness completeness_of(const VerifyTotals& totals) { return completeness_in_frames(totals.frames / totals.at_once, totals.frames_wanted / totals.at_once); }
 
 } // namespace cinch

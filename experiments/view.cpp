@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/view.hpp"
 
-#include <filesystem>
-#include <fstream>
+#include <optional>
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
@@ -11,9 +10,12 @@
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/number.hpp"
 #include "experiments/report/record_output.hpp"
+#include "experiments/report/whole_file.hpp"
 #include "toolkit/surface/input_error.hpp"
 
 namespace cinch {
+
+using Json = nlohmann::ordered_json;
 
 int view(const ViewOptions& options)
 {
@@ -21,45 +23,51 @@ int view(const ViewOptions& options)
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
     if (options.report.empty() && !options.json)
         throw InputError("view: --report FILE.html or --json is needed");
-    std::ofstream file;
-    if (!options.report.empty()) { // what was there is kept until all is done
-        const bool there = std::filesystem::exists(options.report);
-        file.open(options.report, std::ios::binary | std::ios::app);
-        if (!file)
-            throw InputError::in_file(options.report, "cannot be written");
-        file.close();
-        if (!there)
-            std::filesystem::remove(options.report);
-    }
-    catch_interrupt();
+    std::optional<WholeFile> file;
+    if (!options.report.empty())
+        file.emplace(options.report);
     RecordOutput output({options.json, false, {}, {}}, provenance(threads, options.request.seed));
-    std::vector<nlohmann::ordered_json> views;
+    std::vector<Json> views;
     std::vector<ViewRequest> wanted = options.request.scene.empty() ? report_views() : std::vector{options.request};
     for (ViewRequest& request : wanted)
         request.seed = options.request.seed;
-    for (const ViewRequest& request : wanted)
-        if (views.empty() || !interrupted()) {
-            views.push_back(make_view(request));
-            output.add({{"experiment", "view"}, {"scene", views.back()["scene"]}, {"frames", views.back()["time_s"].size()}, {"view", views.back()}});
+    catch_interrupt();
+    std::size_t whole = 0;
+    try {
+        for (const ViewRequest& request : wanted) {
+            throw_if_interrupted();
+            Json view = make_view(request);
+            const std::size_t done = view["bounds"].size(), methods = request.methods.size(), frames = view["time_s"].size();
+            if (done < methods)
+                view["text"] = fmt::format("{} ({})", view["text"].get<std::string>(), interrupted_after(done, methods, "methods"));
+            whole += done == methods;
+            output.add({{"experiment", "view"}, {"scene", view["scene"]}, {"frames_done", frames}, {"frames", frames}, {"complete", done == methods}, {"view", view}});
+            views.push_back(std::move(view));
         }
+    } catch (const Interrupted&) { // the views before are kept
+        if (views.empty())
+            throw;
+    }
+    const std::string note = whole == wanted.size() ? "" : interrupted_after(whole, wanted.size(), wanted.size() == 1 ? "view" : "views");
+    if (!note.empty()) // those that came before had no way to know
+        output.add({{"experiment", "view"}, {"views_done", whole}, {"views", wanted.size()}, {"complete", false}});
     output.finish();
-    if (interrupted() && options.report.empty())
-        return 130;
-    if (options.report.empty())
-        return 0;
-    const std::string page = view_page(views);
-    file.open(options.report, std::ios::binary | std::ios::trunc);
-    file << page;
-    if (!file.flush())
-        throw InputError::in_file(options.report, "writing failed; is the disk full?");
-    for (const auto& made : views)
-        fmt::print(options.json ? stderr : stdout, "{}: {}, {}\n", made["scene"].get<std::string>(), counted(made["time_s"].size(), "frame", "frames"),
-                   counted(made["bounds"].size(), "method", "methods"));
-    fmt::print(options.json ? stderr : stdout, "{}: {:.1f} MB\n", options.report, static_cast<double>(page.size()) / 1e6);
-    if (!has_three())
-        fmt::print(stderr, "cinch: built without three.js, the page says how to get it\n");
-    if (interrupted()) {
-        fmt::print(stderr, "cinch: interrupted; the page has what was done until then\n");
+    if (file) {
+        const std::string page = view_page(views, note);
+        file->write(page);
+        file->commit();
+        if (!note.empty())
+            fmt::print(options.json ? stderr : stdout, "{}:\n", note);
+        for (const auto& made : views)
+            fmt::print(options.json ? stderr : stdout, "{}: {}, {}\n", made["scene"].get<std::string>(), counted(made["time_s"].size(), "frame", "frames"),
+                       counted(made["bounds"].size(), "method", "methods"));
+        fmt::print(options.json ? stderr : stdout, "{}: {:.1f} MB\n", options.report, static_cast<double>(page.size()) / 1e6);
+        if (!has_three())
+            fmt::print(stderr, "cinch: built without three.js, the page says how to get it\n");
+    }
+    if (!note.empty()) {
+        std::fflush(stdout);
+        fmt::print(stderr, "cinch: {}\n", note);
         return 130;
     }
     return 0;

@@ -51,14 +51,15 @@ CollideScene load(const std::string& name, const CollideOptions& options)
 
 SceneResult run(const CollideScene& scene, const std::vector<BackendKind>& kinds, const CollideOptions& options)
 {
-    SceneResult result{scene.name, scene.bodies.size(), scene.bodies[0].surface.mesh.vertices.size(), scene.bodies[0].surface.weights.node_count, {}};
+    SceneResult result{scene.name, scene.bodies.size(), scene.bodies[0].surface.mesh.vertices.size(), scene.bodies[0].surface.weights.node_count, {}, kinds.size()};
     result.backends = measure(scene, kinds, {options.rounds, options.threads, options.cold});
     return result;
 }
 
 Json record(const SceneResult& r, const Measured& m, bool cold)
 {
-    Json out{{"experiment", "collide"}, {"scene", r.scene}, {"backend", m.backend}, {"bodies", r.bodies}, {"vertices", r.vertices}, {"n", r.nodes}, {"frames", m.frames},
+    Json out{{"experiment", "collide"}, {"scene", r.scene}, {"backend", m.backend}, {"bodies", r.bodies}, {"vertices", r.vertices}, {"n", r.nodes}, {"frames_done", m.frames}, {"frames", m.frames_wanted},
+             {"rounds_done", m.rounds}, {"rounds", m.rounds_wanted}, {"complete", m.is_complete()},
              {"cold", cold}, {"evaluate_ms", m.evaluate_ms}, {"update_ms", m.update_ms}, {"query_ms", m.query_ms}, {"total_ms", m.total_ms}, {"pairs", m.pairs},
              {"pairs_differing", m.differing}, {"megabytes_per_body", m.megabytes}};
     if (const Measured* full = r.of("refit-1"))
@@ -93,31 +94,40 @@ int collide(const CollideOptions& options)
     const bool all = names.empty();
     if (all)
         names = {"santa-ring-1", "santa-ring-2", "santa-ring-3", "santa-ring-4", "santa-ring-5", "santa-ring-6", "santa-ring-7", "santa-ring-8", "fishes"};
-    catch_interrupt();
+    const auto own = std::find_if(kinds.begin(), kinds.end(), [](const BackendKind& k) { return k.name == "cinch"; });
+    const std::size_t fewer[] = {12, 6}; // of the fishes: how time grows with bodies
+    const std::size_t wanted = names.size() + (all && own != kinds.end() ? std::size(fewer) : 0);
     std::vector<SceneResult> results;
-    for (const std::string& name : names) {
-        if (interrupted())
-            break;
-        CollideScene scene = load(name, options);
-        if (SceneResult result = run(scene, kinds, options); !result.backends.empty())
+    auto add = [&](SceneResult&& result) {
+        if (!result.backends.empty())
             results.push_back(std::move(result));
-        if (name != "fishes" || !all)
-            continue;
-        for (const std::size_t bodies : {12u, 6u}) { // how time grows with bodies
-            if (interrupted())
-                break;
-            scene.name = fmt::format("fishes/{}", bodies);
-            scene.bodies.resize(bodies);
-            const auto own = std::find_if(kinds.begin(), kinds.end(), [](const BackendKind& k) { return k.name == "cinch"; });
-            if (own != kinds.end())
-                if (SceneResult result = run(scene, {*own}, options); !result.backends.empty())
-                    results.push_back(std::move(result));
+    };
+    catch_interrupt();
+    try {
+        for (const std::string& name : names) {
+            throw_if_interrupted();
+            CollideScene scene = load(name, options);
+            add(run(scene, kinds, options));
+            if (name != "fishes" || !all || own == kinds.end())
+                continue;
+            for (const std::size_t bodies : fewer) {
+                throw_if_interrupted();
+                scene.name = fmt::format("fishes/{}", bodies);
+                scene.bodies.resize(bodies);
+                add(run(scene, {*own}, options));
+            }
         }
+    } catch (const Interrupted&) { // what was measured is kept
+        if (results.empty())
+            throw;
     }
-    if (results.empty()) {
-        fmt::print(stderr, "cinch: interrupted before anything was measured\n");
-        return 130;
-    }
+    const auto whole = static_cast<std::size_t>(std::count_if(results.begin(), results.end(), [](const SceneResult& r) { return r.is_complete(); }));
+    Completeness completeness{0, 0, whole == wanted, whole == wanted ? "" : interrupted_after(whole, wanted, wanted == 1 ? "scene" : "scenes")};
+    for (const SceneResult& r : results)
+        for (const Measured& m : r.backends) {
+            completeness.frames_done += m.frames;
+            completeness.frames += m.frames_wanted;
+        }
     std::vector<Json> records;
     bool different = false;
     for (const SceneResult& r : results)
@@ -129,9 +139,11 @@ int collide(const CollideOptions& options)
         records.push_back({{"experiment", "collide"}, {"figure", f.what}, {"measured", f.measured}, {"target", f.target}, {"reached", f.reached}});
     for (const Slope& s : slopes_of(results))
         records.push_back({{"experiment", "collide"}, {"slope", s.what}, {"exponent", s.exponent}});
+    output.set(completeness);
     output.add_all(records);
     output.finish();
     if (!options.output.records_only()) {
+        print_note(completeness);
         print_tables(results, options.cold);
         fmt::print("{}\n", describe(from));
     }
@@ -139,8 +151,9 @@ int collide(const CollideOptions& options)
         fmt::print(stderr, "cinch: a check failed: backends of this project found different pairs\n");
         return 1;
     }
-    if (interrupted()) {
-        fmt::print(stderr, "cinch: interrupted; what was measured until then is printed\n");
+    if (!completeness.complete) {
+        std::fflush(stdout);
+        fmt::print(stderr, "cinch: {}\n", completeness.note);
         return 130;
     }
     return 0;

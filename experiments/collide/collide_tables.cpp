@@ -8,6 +8,7 @@
 
 #include "experiments/report/number.hpp"
 #include "experiments/report/paper_figures.hpp"
+#include "experiments/report/record_output.hpp"
 #include "experiments/report/table.hpp"
 
 namespace cinch {
@@ -27,12 +28,15 @@ std::size_t ring(const std::string& scene)
 // Of the paper's Table 3, which has one for two scenes: they differ in simulation nodes only.
 std::string row_of_table_3(std::size_t ring) { return fmt::format("{}, {}", (ring - 1) / 2 * 2 + 1, (ring - 1) / 2 * 2 + 2); }
 
+// "60", or "12 of 60" after an interrupt.
+std::string frames_of(const Measured& m) { return m.frames == m.frames_wanted ? grouped(m.frames) : fmt::format("{} of {}", grouped(m.frames), grouped(m.frames_wanted)); }
+
 void print_scenes(const std::vector<SceneResult>& results)
 {
     Rows rows;
     for (const SceneResult& r : results)
         rows.push_back({r.scene, grouped(r.bodies), grouped(r.vertices), grouped(r.nodes), fmt::format("{:.0f}", r.backends[0].pairs),
-                        fmt::format("{:.0f}", *std::max_element(r.backends[0].pairs_of_frame.begin(), r.backends[0].pairs_of_frame.end())), grouped(r.backends[0].frames)});
+                        fmt::format("{:.0f}", *std::max_element(r.backends[0].pairs_of_frame.begin(), r.backends[0].pairs_of_frame.end())), frames_of(r.backends[0])});
     fmt::print("Scenes (Table 2); pairs: intersecting triangles per frame\n\n{}\n", table({"scene", "bodies", "vertices", "nodes", "pairs: median", "most", "frames"}, rows));
 }
 
@@ -90,10 +94,11 @@ void print_backends(const SceneResult& r)
 {
     Rows rows;
     for (const Measured& m : r.backends)
-        rows.push_back({m.backend, m.evaluate_ms < 5e-4 ? "-" : ms(m.evaluate_ms), ms(m.update_ms), ms(m.query_ms), ms(m.total_ms),
+        rows.push_back({m.frames == m.frames_wanted ? m.backend : fmt::format("{} ({} frames)", m.backend, frames_of(m)), m.evaluate_ms < 5e-4 ? "-" : ms(m.evaluate_ms), ms(m.update_ms), ms(m.query_ms), ms(m.total_ms),
                         times(m.total_ms / r.backends[0].total_ms), fmt::format("{:.0f}", m.pairs), m.differing ? grouped(m.differing) : "-",
                         fmt::format("{:.1f}", m.megabytes)});
-    fmt::print("{}, ms per frame (medians over {} frames)\n\n{}\n", r.scene, r.backends[0].frames,
+    fmt::print("{}, ms per frame (medians over {} frames){}\n\n{}\n", r.scene, frames_of(r.backends[0]),
+               r.is_complete() ? "" : ", " + interrupted_after(r.backends.size() - !r.backends.back().is_complete(), r.backends_wanted, "backends"),
                table({"", "evaluate", "update", "query", "total", "times", "pairs", "differ", "MB/body"}, rows));
 }
 
@@ -147,9 +152,14 @@ double worst_quarter(const SceneResult& r, const Measured& own, const std::vecto
 const Measured* SceneResult::of(const std::string& backend) const
 {
     for (const Measured& m : backends)
-        if (m.backend == backend)
+        if (m.backend == backend && m.frames == m.frames_wanted)
             return &m;
     return nullptr;
+}
+
+bool SceneResult::is_complete() const
+{
+    return backends.size() == backends_wanted && std::all_of(backends.begin(), backends.end(), [](const Measured& m) { return m.is_complete(); });
 }
 
 std::vector<Figure> figures_of(const std::vector<SceneResult>& results, bool cold)

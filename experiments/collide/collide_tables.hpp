@@ -14,7 +14,10 @@ struct SceneResult {
     std::string scene;
     std::size_t bodies = 0, vertices = 0, nodes = 0; ///< of each body
     std::vector<Measured> backends;
+    std::size_t backends_wanted = 0; ///< more than there are after an interrupt
 
+    bool is_complete() const;
+    /// The backend's, if it has been through all frames: others do not compare.
     const Measured* of(const std::string& backend) const;
 };
 

@@ -62,14 +62,17 @@ void run_frame(Contestant& c, std::size_t frame, bool cold, std::vector<Triangle
 {
     using Clock = std::chrono::steady_clock;
     auto ms = [](Clock::time_point from, Clock::time_point to) { return std::chrono::duration<double, std::milli>(to - from).count(); };
+    throw_if_interrupted();
     if (cold)
         evict_caches();
     pairs.clear();
     const auto start = Clock::now();
     c.backend->evaluate(frame);
     const auto evaluated = Clock::now();
+    throw_if_interrupted();
     c.backend->update();
     const auto updated = Clock::now();
+    throw_if_interrupted();
     c.backend->query(pairs);
     const auto end = Clock::now();
     Times& t = c.frames[frame];
@@ -87,45 +90,47 @@ std::vector<Measured> measure(const CollideScene& scene, const std::vector<Backe
     std::vector<Contestant> all(kinds.size());
     {
         Progress progress(scene.name + ": building", kinds.size());
-        for (std::size_t k = 0; k < kinds.size() && !interrupted(); ++k) {
+        for (std::size_t k = 0; k < kinds.size(); ++k) {
+            throw_if_interrupted();
             all[k].backend = kinds[k].make(scene);
             all[k].frames.resize(scene.frames());
             all[k].out.backend = kinds[k].name;
             progress.done(k + 1);
         }
     }
-    if (interrupted())
-        return {};
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(options.threads));
     if (options.threads == 1)
         pin_to_one_core();
     std::vector<TrianglePair> pairs;
     Progress progress(scene.name, kinds.size() * options.rounds);
     std::size_t done = 0;
-    for (std::size_t round = 0; round < options.rounds; ++round)
-        for (std::size_t k = 0; k < kinds.size() && !interrupted(); ++k) {
-            Contestant& c = all[k];
-            for (std::size_t f = 0; f < scene.frames() && !(round > 0 && c.slow) && !interrupted(); ++f) {
-                run_frame(c, f, options.cold, pairs);
-                if (round > 0)
-                    continue;
-                c.slow |= c.frames[f].total[0] > slow_ms;
-                c.out.pairs_of_frame.push_back(static_cast<double>(pairs.size()));
-                if (const QueryCounts* counts = c.backend->counts()) {
-                    c.out.counts = true;
-                    add(c.out.sums, *counts);
+    try {
+        for (std::size_t round = 0; round < options.rounds; ++round)
+            for (std::size_t k = 0; k < kinds.size(); ++k) {
+                Contestant& c = all[k];
+                for (std::size_t f = 0; f < scene.frames() && !(round > 0 && c.slow); ++f) {
+                    run_frame(c, f, options.cold, pairs);
+                    if (round > 0)
+                        continue;
+                    c.slow |= c.frames[f].total[0] > slow_ms;
+                    c.out.pairs_of_frame.push_back(static_cast<double>(pairs.size()));
+                    if (const QueryCounts* counts = c.backend->counts()) {
+                        c.out.counts = true;
+                        add(c.out.sums, *counts);
+                    }
+                    std::sort(pairs.begin(), pairs.end());
+                    if (k == 0) {
+                        expected[f] = pairs;
+                    } else {
+                        std::vector<TrianglePair> different;
+                        std::set_symmetric_difference(pairs.begin(), pairs.end(), expected[f].begin(), expected[f].end(), std::back_inserter(different));
+                        c.out.differing += different.size();
+                    }
                 }
-                std::sort(pairs.begin(), pairs.end());
-                if (k == 0) {
-                    expected[f] = pairs;
-                } else {
-                    std::vector<TrianglePair> different;
-                    std::set_symmetric_difference(pairs.begin(), pairs.end(), expected[f].begin(), expected[f].end(), std::back_inserter(different));
-                    c.out.differing += different.size();
-                }
+                progress.done(++done);
             }
-            progress.done(++done);
-        }
+    } catch (const Interrupted&) { // a frame that was not whole left nothing
+    }
     std::vector<Measured> results;
     for (Contestant& c : all) {
         std::vector<double> evaluate, update, query;
@@ -140,6 +145,9 @@ std::vector<Measured> measure(const CollideScene& scene, const std::vector<Backe
         if (c.out.total_of_frame.empty())
             continue;
         c.out.frames = c.out.total_of_frame.size();
+        c.out.frames_wanted = scene.frames();
+        c.out.rounds = c.frames.back().total.size(); // those through all frames
+        c.out.rounds_wanted = c.slow ? 1 : options.rounds;
         c.out.evaluate_ms = median(evaluate);
         c.out.update_ms = median(update);
         c.out.query_ms = median(query);

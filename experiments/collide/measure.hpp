@@ -10,7 +10,10 @@ struct Measured {
     std::string backend;
     double evaluate_ms = 0, update_ms = 0, query_ms = 0, total_ms = 0;
     double pairs = 0;            ///< median per frame
-    std::size_t frames = 0;      ///< measured; fewer than the scene's after an interrupt
+    std::size_t frames = 0;      ///< measured
+    std::size_t frames_wanted = 0, rounds = 0, rounds_wanted = 0; ///< more than measured after an interrupt; a slow backend wants one round
+
+    bool is_complete() const { return frames == frames_wanted && rounds == rounds_wanted; }
     std::size_t differing = 0;   ///< pairs that only it or only the first backend found, over all frames
     double megabytes = 0;        ///< per body
     bool counts = false;
@@ -24,7 +27,8 @@ struct MeasureOptions {
     bool cold = false;       ///< evict the caches before every frame
 };
 
-/// Every backend in turn through all frames of the scene. Pairs are compared with those of the first backend, frame by frame.
+/// Every backend in turn through all frames of the scene. Pairs are compared with those of the first backend, frame by frame. An interrupt leaves
+/// the whole frames of the backends that have some; before there are any, Interrupted is thrown.
 std::vector<Measured> measure(const CollideScene& scene, const std::vector<BackendKind>& kinds, const MeasureOptions& options);
 
 } // namespace cinch

@@ -49,6 +49,7 @@ std::vector<Row> measure(const CostSample& sample, int kdop, double seconds)
     std::vector<std::vector<double>> supports;
     std::vector<std::function<void()>> calls;
     for (const CostContestant& c : contestants) {
+        throw_if_interrupted();
         supports.emplace_back(sample.bvs.size() * k);
         c.bound(supports.back());
     }
@@ -148,31 +149,42 @@ int cost(const CostOptions& options)
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     const Provenance from = provenance(1, options.input.seed);
     RecordOutput output(options.output, from);
-    catch_interrupt();
     const Input input = load_input(options.input);
-    std::vector<DualGap> gaps = dual_gaps(input, options.leaf);
+    std::vector<std::string> others; // of which the gap is measured too
     if (options.all_scenes)
         for (const char* shape : {"brain", "santa", "fish"})
-            if (input.name != shape && !interrupted()) {
-                InputOptions what;
-                what.input = shape;
-                for (DualGap& gap : dual_gaps(load_input(what), options.leaf))
-                    gaps.push_back(std::move(gap));
-            }
+            if (input.name != shape)
+                others.emplace_back(shape);
     const Bvh bvh = build_bvh(input.surface, options.leaf);
     CostSample sample{input.surface, bvh, input.clip.frames.back(), {}};
     for (std::size_t l = 0; l + 1 < bvh.level.size(); ++l)
         sample.bvs.push_back((bvh.level[l] + bvh.level[l + 1]) / 2);
-    pin_to_one_core();
+    catch_interrupt();
+    std::vector<DualGap> gaps;
     std::vector<Row> rows;
-    {
-        Progress progress("measuring k-DOPs", options.kdops.size());
-        for (std::size_t i = 0; i < options.kdops.size() && !interrupted(); ++i) {
-            for (Row& row : measure(sample, options.kdops[i], options.seconds))
-                rows.push_back(std::move(row));
-            progress.done(i + 1);
+    std::size_t done = 0;
+    const std::size_t wanted = 1 + others.size() + options.kdops.size();
+    try {
+        Progress progress("measuring gaps and k-DOPs", wanted);
+        auto step = [&](auto&& made, auto& all) {
+            for (auto& one : made)
+                all.push_back(std::move(one));
+            progress.done(++done);
+        };
+        step(dual_gaps(input, options.leaf), gaps);
+        for (const std::string& shape : others) {
+            throw_if_interrupted();
+            InputOptions what;
+            what.input = shape;
+            step(dual_gaps(load_input(what), options.leaf), gaps);
         }
+        pin_to_one_core();
+        for (const int kdop : options.kdops)
+            step(measure(sample, kdop, options.seconds), rows);
+    } catch (const Interrupted&) { // whole k-DOPs and inputs are kept
     }
+    const std::size_t kdops = done - std::min(done, 1 + others.size());
+    const Completeness completeness{1, 1, done == wanted, done == wanted ? "" : interrupted_after(kdops, options.kdops.size(), options.kdops.size() == 1 ? "k-DOP" : "k-DOPs")};
     std::vector<nlohmann::ordered_json> records;
     auto number = [](double x) { return std::isfinite(x) ? nlohmann::ordered_json(x) : nlohmann::ordered_json(); };
     for (const Row& r : rows)
@@ -182,17 +194,24 @@ int cost(const CostOptions& options)
     for (const DualGap& gap : gaps)
         for (int passes = 0; passes < 5; ++passes)
             records.push_back({{"experiment", "cost"}, {"input", gap.input}, {"method", name_of(gap.method)}, {"least_n", gap.least_n}, {"most_n", gap.most_n},
-                               {"passes", passes}, {"gap_percent", gap.gap[passes]}, {"bounds", gap.bounds}});
+                               {"passes", passes}, {"gap_percent", gap.gap[passes]}, {"bounds", gap.bounds}, {"frames_done", gap.frames}, {"frames", gap.frames}});
     for (const Figure& f : figures_of(gaps))
         records.push_back({{"experiment", "cost"}, {"figure", f.what}, {"measured", f.measured}, {"target", f.target}, {"reached", f.reached}});
+    output.set(completeness);
     output.add_all(records);
     output.finish();
     if (!options.output.records_only()) {
+        print_note(completeness);
         print_tables(input, sample, rows, gaps);
         print(figures_of(gaps));
         fmt::print("\n{}\n", describe(from));
     }
-    return interrupted() ? 130 : 0;
+    if (!completeness.complete) {
+        std::fflush(stdout);
+        fmt::print(stderr, "cinch: {}\n", completeness.note);
+        return 130;
+    }
+    return 0;
 }
 
 } // namespace cinch

@@ -49,6 +49,7 @@ struct DualGap {
     std::size_t least_n, most_n; ///< BVs with so many simulation nodes
     std::size_t bounds;
     double gap[5];               ///< after 0 to 4 passes
+    std::size_t frames = 0;      ///< of the clip
 };
 std::vector<DualGap> dual_gaps(const Input& input, std::size_t leaf);
 

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "experiments/cost/cost.hpp"
+#include "experiments/report/interrupt.hpp"
 #include "toolkit/hierarchy/packed_bvh.hpp"
 
 namespace cinch {
@@ -38,6 +39,7 @@ std::vector<CostContestant> kernel_contestants(const CostSample& sample, int kdo
 {
     std::vector<CostContestant> all;
     for (const Method method : {Method::convex, Method::eq12, Method::limited, Method::local, Method::support, Method::linear, Method::best}) {
+        throw_if_interrupted();
         const auto kinds = choose_kinds(sample.bvh, sample.surface, method);
         add<float>(sample, kdop, kinds, method, all);
         add<double>(sample, kdop, kinds, method, all);
@@ -59,11 +61,15 @@ std::vector<DualGap> dual_gaps(const Input& input, std::size_t leaf)
         std::vector<double> best(bvh.bvs.size() * 6), bound(best);
         Refitter optimum(bvh, input.surface, {method, 6, Rounding::plain, Precision::float64, converged});
         std::vector<Refitter> refits;
-        for (int passes = 0; passes < 5; ++passes)
+        for (int passes = 0; passes < 5; ++passes) {
+            throw_if_interrupted();
             refits.emplace_back(bvh, input.surface, RefitOptions{method, 6, Rounding::plain, Precision::float64, passes});
+        }
         for (const auto& maps : input.clip.frames) {
+            throw_if_interrupted();
             optimum(maps, best);
             for (int passes = 0; passes < 5; ++passes) {
+                throw_if_interrupted();
                 refits[static_cast<std::size_t>(passes)](maps, bound);
                 for (std::size_t bv = 0; bv < bvh.bvs.size(); ++bv)
                     for (DualGap& gap : by_n) {
@@ -85,6 +91,7 @@ std::vector<DualGap> dual_gaps(const Input& input, std::size_t leaf)
                 continue;
             for (double& g : gap.gap)
                 g /= static_cast<double>(gap.bounds);
+            gap.frames = input.clip.frames.size();
             gaps.push_back(gap);
         }
     }

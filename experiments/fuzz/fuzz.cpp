@@ -157,6 +157,8 @@ private:
 
     void summarise()
     {
+        const bool is_complete = !interrupted() || finished();
+        output_.set({0, 0, is_complete, is_complete ? "" : fmt::format("interrupted after {} cases", grouped(state_.next))});
         const Provenance from = provenance(threads_, options_.seed);
         const double seconds = state_.seconds;
         output_.add({{"experiment", "fuzz"}, {"cases", state_.next}, {"violations", state_.violations}, {"seconds", seconds}, {"family", options_.family},
@@ -164,6 +166,8 @@ private:
         output_.finish();
         if (options_.output.records_only())
             return;
+        if (!is_complete)
+            fmt::print("interrupted: not all that was asked for\n");
         fmt::print("{} cases, {} violations\n{}, {} cases per second\n{}\n", grouped(state_.next), grouped(state_.violations), duration(seconds),
                    grouped(static_cast<std::size_t>(static_cast<double>(state_.next) / std::max(seconds, 1e-3))), describe(from));
     }

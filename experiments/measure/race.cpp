@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <sched.h>
 
+#include "experiments/report/interrupt.hpp"
+
 namespace cinch {
 namespace {
 
@@ -35,6 +37,7 @@ std::vector<double> race(const std::vector<std::function<void()>>& contestants, 
     std::vector<std::size_t> times;
     double round = 0; // seconds for one batch of everyone
     for (const auto& call : contestants) {
+        throw_if_interrupted();
         call(); // warm
         const double once = std::max(timed(call, 1), 1e-9);
         times.push_back(std::max<std::size_t>(1, static_cast<std::size_t>(batch / once)));
@@ -43,8 +46,10 @@ std::vector<double> race(const std::vector<std::function<void()>>& contestants, 
     const auto rounds = std::max<std::size_t>(3, static_cast<std::size_t>(seconds / round));
     std::vector<std::vector<double>> ns(contestants.size());
     for (std::size_t r = 0; r < rounds; ++r)
-        for (std::size_t i = 0; i < contestants.size(); ++i)
+        for (std::size_t i = 0; i < contestants.size(); ++i) {
+            throw_if_interrupted();
             ns[i].push_back(1e9 * timed(contestants[i], times[i]) / static_cast<double>(times[i]));
+        }
     std::vector<double> median;
     for (auto& all : ns) {
         const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);

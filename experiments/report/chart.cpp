@@ -53,14 +53,16 @@ void require_gnuplot(const std::string& option)
         throw InputError(option + " needs gnuplot; on Debian: apt-get install gnuplot-nox");
 }
 
-std::string svg(const std::vector<Chart>& charts)
+std::string svg(const std::vector<Chart>& charts, const std::string& note)
 {
     std::string script = fmt::format("set encoding utf8\n"
                                      "set terminal svg size 760,{} dynamic enhanced background '#ffffff' font 'sans-serif,15'\n"
                                      "set multiplot layout {},1\nset grid lc rgb '#dddddd'\nset border lc rgb '#555555'\nset key outside bottom center horizontal samplen 1.5 spacing 1.15 font ',13'\n",
                                      430 * charts.size(), charts.size());
+    if (!note.empty())
+        script += fmt::format("set label 1 {} at screen 0.01,0.992 left noenhanced font ',13' tc rgb '#b3261e'\n", quoted(note));
     for (const Chart& chart : charts)
-        script += script_of(chart);
+        script += script_of(chart) + "unset label 1\n";
     script += "unset multiplot\n";
     std::string name = (std::filesystem::temp_directory_path() / "cinch-XXXXXX").string();
     const int file = mkstemp(name.data());
@@ -68,8 +70,8 @@ std::string svg(const std::vector<Chart>& charts)
         throw InputError("no temporary file can be made; is the disk full?");
     const bool written = write(file, script.data(), script.size()) == static_cast<ssize_t>(script.size());
     close(file);
-    std::string out;
-    FILE* gnuplot = written ? popen(("gnuplot '" + name + "' 2>/dev/null").c_str(), "r") : nullptr;
+    std::string out; // an interrupt of the terminal's whole group is for us: what is there is still drawn
+    FILE* gnuplot = written ? popen(("trap '' INT TERM; exec gnuplot '" + name + "' 2>/dev/null").c_str(), "r") : nullptr;
     if (gnuplot) {
         std::array<char, 65536> part;
         for (std::size_t n; (n = std::fread(part.data(), 1, part.size(), gnuplot)) > 0;)

@@ -27,6 +27,10 @@ int run_child(const std::vector<std::string>& arguments, const std::filesystem::
     const pid_t parent = getpid(), child = fork();
     if (child == 0) {
         prctl(PR_SET_PDEATHSIG, SIGKILL);
+        sigset_t ours; // what a terminal sends to both is for the parent to answer
+        sigemptyset(&ours);
+        sigaddset(&ours, SIGINT);
+        sigprocmask(SIG_BLOCK, &ours, nullptr);
         if (getppid() != parent || dup2(in, STDIN_FILENO) < 0 || dup2(out, STDOUT_FILENO) < 0)
             _exit(127);
         execv("/proc/self/exe", words.data());
@@ -37,16 +41,14 @@ int run_child(const std::vector<std::string>& arguments, const std::filesystem::
     if (child < 0)
         throw InputError("no process can be started");
     int status = 0;
-    for (bool told = false;;) {
+    for (;;) {
         const pid_t ended = waitpid(child, &status, WNOHANG);
         if (ended == child)
             break;
         if (ended < 0 && errno != EINTR)
             throw InputError("a process was lost");
-        if (interrupted() && !told) { // a terminal has told it already; once more ends it at once, which is as well
-            kill(child, SIGINT);
-            told = true;
-        }
+        if (interrupted()) // nobody reads half a result
+            kill(child, SIGKILL);
         const timespec pause{0, 20'000'000};
         nanosleep(&pause, nullptr);
     }

@@ -7,17 +7,16 @@
 
 namespace cinch {
 
-/// A text file written line by line, compressed if its name ends in ".gz". Errors throw InputError.
+/// A text file written line by line, compressed if its name ends in ".gz", and there when it is whole (whole_file.hpp). Errors throw InputError.
 class LineFile {
 public:
     explicit LineFile(const std::string& name);
     ~LineFile();
     void line(std::string_view text);
-    void close(); ///< reports what buffered writing may still hide
+    void commit(); ///< without it nothing has happened
 
 private:
     struct Handle;
-    std::string name_;
     std::unique_ptr<Handle> handle_;
 };
 

@@ -3,14 +3,12 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
 
 #include <fmt/format.h>
 
 #include "experiments/report/chart.hpp"
 #include "experiments/report/page/charts.hpp"
 #include "experiments/report/page/page.hpp"
-#include "toolkit/surface/input_error.hpp"
 
 namespace cinch {
 namespace {
@@ -49,14 +47,6 @@ void print_csv(const std::vector<Json>& records)
     }
 }
 
-void write_file(const std::string& file, const std::string& text)
-{
-    std::ofstream out(file, std::ios::binary);
-    out << text;
-    if (!out.flush())
-        throw InputError::in_file(file, "cannot be written");
-}
-
 // The records as if they had been read from a file named after their experiment.
 Results results_of(const std::vector<Json>& records, const Json& from)
 {
@@ -79,25 +69,46 @@ std::string json_line(Json record, const Provenance& from)
     return dumped(record);
 }
 
+std::string interrupted_after(std::size_t done, std::size_t wanted, const std::string& what)
+{
+    return fmt::format("interrupted after {} of {} {}", done, wanted, what);
+}
+
+Completeness completeness_in_frames(std::size_t done, std::size_t wanted)
+{
+    return {done, wanted, done == wanted, done == wanted ? "" : interrupted_after(done, wanted, "frames")};
+}
+
+void print_note(const Completeness& completeness)
+{
+    if (!completeness.note.empty())
+        fmt::print("{}: what follows is of these alone\n\n", completeness.note);
+}
+
 RecordOutput::RecordOutput(const OutputOptions& options, const Provenance& from) : options_(options), from_(to_json(from))
 {
-    for (const auto& [file, option] : {std::pair(options.plot, "--plot"), std::pair(options.report, "--report")})
-        if (!file.empty()) {
-            require_gnuplot(option);
-            if (!std::ofstream(file, std::ios::app))
-                throw InputError::in_file(file, "cannot be written");
-        }
+    if (!options.plot.empty()) {
+        require_gnuplot("--plot");
+        plot_.emplace(options.plot);
+    }
+    if (!options.report.empty()) {
+        require_gnuplot("--report");
+        page_.emplace(options.report);
+    }
 }
 
 void RecordOutput::add(const Json& record)
 {
-    if (options_.json) {
-        Json line = record;
-        line.update(from_);
-        fmt::print("{}\n", dumped(line));
-    }
-    if (options_.csv || !options_.plot.empty() || !options_.report.empty())
-        records_.push_back(record);
+    Json line = record;
+    for (const auto& [name, value] : {std::pair("frames_done", Json(completeness_.frames_done)), std::pair("frames", Json(completeness_.frames)), std::pair("complete", Json(completeness_.complete))})
+        if (!line.contains(name))
+            line[name] = value;
+    if (options_.csv || plot_ || page_)
+        records_.push_back(line);
+    if (!options_.json)
+        return;
+    line.update(from_);
+    fmt::print("{}\n", dumped(line));
 }
 
 void RecordOutput::add_all(const std::vector<Json>& records)
@@ -111,17 +122,22 @@ void RecordOutput::finish()
     if (options_.csv)
         print_csv(records_);
     std::fflush(stdout);
-    if (options_.plot.empty() && options_.report.empty())
+    if (!plot_ && !page_)
         return;
     const Results results = results_of(records_, from_);
-    if (!options_.plot.empty()) {
+    if (plot_) {
         std::vector<Chart> charts;
         for (const html::ChartFigure& chart : charts_of(results))
             charts.push_back(chart.chart);
-        write_file(options_.plot, svg(charts));
+        if (!charts.empty() || completeness_.complete) { // else nothing has been measured yet
+            plot_->write(svg(charts, completeness_.note));
+            plot_->commit();
+        }
     }
-    if (!options_.report.empty())
-        write_file(options_.report, command_page(results));
+    if (page_) {
+        page_->write(command_page(results, completeness_.note));
+        page_->commit();
+    }
 }
 
 } // namespace cinch

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
 #include "experiments/report/provenance.hpp"
+#include "experiments/report/whole_file.hpp"
 
 namespace cinch {
 
@@ -19,20 +21,39 @@ struct OutputOptions {
     bool records_only() const { return json || csv; }
 };
 
-/// The records of a command: JSON objects, each with the provenance added. As JSON Lines they are printed as they come; CSV, charts and
+/// How much of what was asked for a result is of. In every record as "frames_done", "frames" and "complete", so that a part is never read as the whole.
+struct Completeness {
+    std::size_t frames_done = 0, frames = 0; ///< 0 of 0 where a command has no frames
+    bool complete = true;
+    std::string note; ///< for people, where it is not complete: interrupted_after()
+};
+
+/// "interrupted after 3 of 9 sizes".
+std::string interrupted_after(std::size_t done, std::size_t wanted, const std::string& what);
+/// The completeness of a command whose only measure is frames.
+Completeness completeness_in_frames(std::size_t done, std::size_t wanted);
+/// The note, where there is one, as the first line of a table on standard output.
+void print_note(const Completeness& completeness);
+
+/// The records of a command: JSON objects, each with its completeness and the provenance added. As JSON Lines they are printed as they come; CSV, charts and
 /// the page follow when all are there.
 class RecordOutput {
 public:
     /// To be made before measuring: throws InputError if gnuplot is missing, or a file cannot be written.
     RecordOutput(const OutputOptions& options, const Provenance& from);
+    /// The completeness of the records added from here on; a record's own fields of these names go before. The last one is also that of charts and page.
+    void set(Completeness completeness) { completeness_ = std::move(completeness); }
     void add(const nlohmann::ordered_json& record);
     void add_all(const std::vector<nlohmann::ordered_json>& records);
+    /// Writes what has not been printed yet. Without it charts and page stay as they were.
     void finish();
 
 private:
     OutputOptions options_;
     nlohmann::ordered_json from_;
+    Completeness completeness_;
     std::vector<nlohmann::ordered_json> records_;
+    std::optional<WholeFile> plot_, page_;
 };
 
 /// A record of this provenance, as one line of text.

@@ -19,6 +19,7 @@
 #include "experiments/report/results.hpp"
 #include "experiments/report/stages.hpp"
 #include "experiments/report/whole_file.hpp"
+#include "toolkit/surface/input_error.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 
 namespace cinch {
@@ -88,6 +89,9 @@ Outcome run(const Stage& stage, const ReproduceOptions& options)
 /// Reads what is stored and writes the page. Damage goes to standard error too.
 std::vector<Damage> write_page(const fs::path& folder, const fs::path& page)
 {
+    for (const Stage& stage : stages())
+        guard_input(folder / (stage.name + ".jsonl"));
+    WholeFile whole(page);
     Results results;
     ReportNotes notes;
     for (const Stage& stage : stages()) {
@@ -100,14 +104,8 @@ std::vector<Damage> write_page(const fs::path& folder, const fs::path& page)
         for (Record& record : read_results(file, notes.damage))
             results.add(std::move(record));
     }
-    const fs::path part = page.string() + ".part";
-    {
-        std::ofstream out(part, std::ios::binary);
-        out << report_page(results, notes);
-        if (!out.flush())
-            throw InputError::in_file(part.string(), "cannot be written");
-    }
-    fs::rename(part, page);
+    whole.write(report_page(results, notes));
+    whole.commit();
     for (const Damage& damage : notes.damage)
         fmt::print(stderr, "cinch: {}\n", describe({(folder / damage.file).string(), damage.line, damage.what + "; the file is left out"}));
     return notes.damage;
@@ -138,6 +136,7 @@ int reproduce(const ReproduceOptions& options)
     const double planned = left;
     const auto start = std::chrono::steady_clock::now();
     std::vector<std::string> bad;
+    bool refuted = false;
     for (std::size_t i = 0; i < wanted.size() && !interrupted(); ++i) {
         const Stage& stage = wanted[i];
         // What is left in proportion to how long the others took, once they say something about this machine.
@@ -145,7 +144,10 @@ int reproduce(const ReproduceOptions& options)
         fmt::print(stderr, "{}/{} {}: {}; {} left\n", i + 1, wanted.size(), stage.name, stage.what, duration(left * (done > 0.05 * planned ? elapsed / done : 1)));
         switch (run(stage, options)) {
         case Outcome::stored: break;
-        case Outcome::check_failed: bad.push_back(stage.name + ": a check failed"); break;
+        case Outcome::check_failed:
+            bad.push_back(stage.name + ": a check failed");
+            refuted = true;
+            break;
         case Outcome::failed: bad.push_back(stage.name + ": 'cinch' failed, nothing is stored"); break;
         case Outcome::interrupted: continue;
         }
@@ -160,7 +162,7 @@ int reproduce(const ReproduceOptions& options)
         return 130;
     }
     fmt::print("{}\n", page.string());
-    return bad.empty() && damage.empty() ? 0 : 1;
+    return refuted ? 1 : bad.empty() && damage.empty() ? 0 : 2;
 }
 
 int report(const ReportOptions& options)
@@ -174,7 +176,7 @@ int report(const ReportOptions& options)
     const fs::path page = options.page.empty() ? folder / "report.html" : fs::path(options.page);
     const auto damage = write_page(folder, page);
     fmt::print("{}\n", page.string());
-    return damage.empty() ? 0 : 1;
+    return damage.empty() ? 0 : 2;
 }
 
 } // namespace cinch

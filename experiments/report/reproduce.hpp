@@ -13,8 +13,8 @@ struct ReproduceOptions {
 };
 
 /// Runs every experiment that is not stored yet, each as a process of its own, and writes the page. An experiment's file appears only
-/// when it is whole, so a run that was stopped or killed continues where it was. Returns the exit status: 0 done, 1 an experiment
-/// failed or a result is damaged, 130 interrupted, with what is finished kept.
+/// when it is whole, so a run that was stopped or killed continues where it was. Returns the exit status: 0 done, 1 a check of
+/// an experiment failed, 2 an experiment could not run or a stored result is damaged, 130 interrupted, with what is finished kept.
 int reproduce(const ReproduceOptions& options);
 
 struct ReportOptions {
@@ -22,7 +22,7 @@ struct ReportOptions {
     std::string page; ///< file to write; empty: report.html in the folder
 };
 
-/// Writes the page of stored results again. Returns the exit status: 1 if a file is damaged; it is named and left out.
+/// Writes the page of stored results again. Returns the exit status: 2 if a file is damaged; it is named and left out.
 int report(const ReportOptions& options);
 
 } // namespace cinch

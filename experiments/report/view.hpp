@@ -34,13 +34,13 @@ struct ViewRequest {
 
 /// One JSON object: surfaces, frames, simulation nodes, bounds by every method and intersecting triangles, as integers on a grid
 /// (grid.hpp), packed (pack.hpp). The bounds contain the vertices on the grid, exactly. Ctrl-C, where it is caught, leaves out
-/// methods that are not done yet, but for the first. Throws InputError for what cannot be loaded or has vertices that are not finite.
+/// methods that are not done yet; before there is one, Interrupted is thrown. Throws InputError for what cannot be loaded or has vertices that are not finite.
 nlohmann::ordered_json make_view(const ViewRequest& request);
 
 /// The <section> elements with their data, before them style and script (three.js in-lined once). No network.
 std::string view_sections(std::span<const nlohmann::ordered_json> views);
-/// A page with nothing else.
-std::string view_page(std::span<const nlohmann::ordered_json> views);
+/// A page with nothing else. `note`: why these are not all, first of all.
+std::string view_page(std::span<const nlohmann::ordered_json> views, const std::string& note = {});
 
 /// Whether three.js was there when the program was built; if not, the sections say so.
 bool has_three();

@@ -10,12 +10,14 @@
 #include <random>
 #include <set>
 #include <utility>
-#include <vector>
 
 #include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "toolkit/simulate/frame_file.hpp"
 #include "toolkit/surface/input_error.hpp"
 
 namespace cinch {
@@ -27,23 +29,23 @@ constexpr std::size_t buffer_bytes = 1 << 16;
 
 std::string because(const std::string& what, int error) { return what + ": " + std::strerror(error) + (error == ENOSPC || error == EDQUOT ? "; the disk is full" : ""); }
 
-/// A file's identity: the same for all its names and links.
-struct Identity {
-    dev_t device;
-    ino_t inode;
-    auto operator<=>(const Identity&) const = default;
-};
-
-/// What this process reads and writes: nothing may be both, or written twice.
+/// What this process reads and writes, as absolute paths: nothing may be both, or written twice.
 struct Known {
     std::mutex mutex;
-    std::set<Identity> inputs;
+    std::set<std::string> inputs;
     std::set<std::string> targets; ///< of files that are being written, as target_of says
 };
 Known& known()
 {
     static Known all;
     return all;
+}
+
+/// Whether a path leads to this file, whatever its names and links.
+bool is_same(const std::string& path, const struct stat& file)
+{
+    struct stat there = {};
+    return stat(path.c_str(), &there) == 0 && there.st_dev == file.st_dev && there.st_ino == file.st_ino;
 }
 
 /// Names of partial files where a signal handler can read them. A slot is taken, written, then shown.
@@ -89,6 +91,26 @@ fs::path target_of(fs::path name)
     return folder / name.filename();
 }
 
+/// The FNV-1a checksum of a file's first bytes is this; false where there are fewer.
+bool begins_with(int file, std::uint64_t bytes, std::uint64_t expected, WholeFile* copy = nullptr)
+{
+    std::string part(buffer_bytes, '\0');
+    std::uint64_t sum = checksum({}), at = 0;
+    while (at < bytes) {
+        const ssize_t got = pread(file, part.data(), std::min<std::uint64_t>(part.size(), bytes - at), static_cast<off_t>(at));
+        if (got < 0 && errno == EINTR)
+            continue;
+        if (got <= 0)
+            return false;
+        const std::string_view here(part.data(), static_cast<std::size_t>(got));
+        sum = checksum(here, sum);
+        if (copy)
+            copy->write(here);
+        at += here.size();
+    }
+    return sum == expected;
+}
+
 std::string random_letters()
 {
     static std::random_device device;
@@ -100,70 +122,132 @@ std::string random_letters()
 
 } // namespace
 
-WholeFile::WholeFile(const fs::path& name) : name_(name.string())
+// True if the file is one to be written directly, and then it is open.
+bool WholeFile::open_directly(const fs::path& name)
 {
     struct stat there = {};
-    const bool exists = stat(name.c_str(), &there) == 0;
-    if (exists && S_ISDIR(there.st_mode))
+    if (stat(name.c_str(), &there) != 0)
+        return false;
+    if (S_ISDIR(there.st_mode))
         throw InputError::in_file(name_, "cannot be written: it is a folder");
-    for (const int standard : {STDOUT_FILENO, STDERR_FILENO}) // its place is where this stream stands in the file
-        if (struct stat open = {}; exists && S_ISREG(there.st_mode) && fstat(standard, &open) == 0 && open.st_dev == there.st_dev && open.st_ino == there.st_ino) {
-            if ((file_ = fcntl(standard, F_DUPFD_CLOEXEC, 0)) < 0)
-                fail(errno);
-            return;
-        }
-    if (exists && !S_ISREG(there.st_mode)) {
-        if ((file_ = open(name.c_str(), O_WRONLY | O_CLOEXEC)) < 0)
-            fail(errno);
-        return;
-    }
-    const fs::path target = target_of(name);
-    {
-        const std::lock_guard lock(known().mutex);
-        if (exists && known().inputs.contains({there.st_dev, there.st_ino}))
-            throw InputError::in_file(name_, "is an input of this command; the output needs another name");
-        for (const std::string& other : known().targets) // by identity too: hard links
-            if (struct stat is = {}; other == target || (exists && stat(other.c_str(), &is) == 0 && is.st_dev == there.st_dev && is.st_ino == there.st_ino))
-                throw InputError::in_file(name_, "is named for two outputs; each needs a name of its own");
-    }
-    if (exists && access(name.c_str(), W_OK) != 0)
-        fail(errno);
-    const std::string folder = target.parent_path().string() + "/";
-    std::string beside;
-    for (int tries = 0; file_ < 0 && tries < 100; ++tries) {
-        beside = folder + target.filename().string().substr(0, NAME_MAX - 12) + "." + random_letters() + ".part";
-        file_ = open(beside.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666); // what the umask leaves, as for every new file
-        if (file_ < 0 && errno != EEXIST)
-            throw InputError::in_file(name_, because("cannot be written, nor any file beside it", errno));
+    if (!S_ISREG(there.st_mode)) {
+        file_ = open(name.c_str(), O_WRONLY | O_CLOEXEC);
+    } else {
+        for (const int standard : {STDOUT_FILENO, STDERR_FILENO}) // its place is where this stream stands in the file
+            if (struct stat open = {}; file_ < 0 && fstat(standard, &open) == 0 && open.st_dev == there.st_dev && open.st_ino == there.st_ino)
+                file_ = fcntl(standard, F_DUPFD_CLOEXEC, 0);
+        if (file_ < 0)
+            return false;
     }
     if (file_ < 0)
-        fail(EEXIST);
-    target_ = target.string();
-    part_ = std::move(beside);
-    slot_ = show_to_handler(part_);
-    if (exists) {
-        if (fchown(file_, there.st_uid, there.st_gid) != 0 && fchown(file_, static_cast<uid_t>(-1), there.st_gid) != 0) {
-            // Neither is ours to give: it becomes a file of the one who writes it.
-        }
-        fchmod(file_, there.st_mode & 07777);
-    }
+        fail(errno);
+    return true;
+}
+
+// Refuses what must not be replaced, else keeps other outputs from it.
+void WholeFile::enter(const fs::path& name)
+{
+    refuse_input(name);
+    const fs::path target = target_of(name);
+    struct stat there = {};
+    const bool exists = stat(name.c_str(), &there) == 0;
+    if (exists && access(name.c_str(), W_OK) != 0)
+        fail(errno);
     const std::lock_guard lock(known().mutex);
+    for (const std::string& other : known().targets)
+        if (other == target || (exists && is_same(other, there)))
+            throw InputError::in_file(name_, "is named for two outputs; each needs a name of its own");
+    target_ = target.string();
     is_registered_ = known().targets.insert(target_).second;
+}
+
+void WholeFile::keep_mode() const
+{
+    struct stat there = {};
+    if (stat(target_.c_str(), &there) != 0)
+        return;
+    if (fchown(file_, there.st_uid, there.st_gid) != 0 && fchown(file_, static_cast<uid_t>(-1), there.st_gid) != 0) {
+        // Neither is ours to give: it becomes a file of the one who writes it.
+    }
+    fchmod(file_, there.st_mode & 07777);
+}
+
+WholeFile::WholeFile(const fs::path& name) : WholeFile()
+{
+    name_ = name.string();
+    if (open_directly(name))
+        return;
+    enter(name);
+    const fs::path target = target_;
+    const std::string beside = (target.parent_path() / target.filename().string().substr(0, NAME_MAX - 12)).string();
+    std::string part;
+    for (int tries = 0; file_ < 0 && (tries == 0 || errno == EEXIST) && tries < 100; ++tries) {
+        part = beside + "." + random_letters() + ".part";
+        file_ = open(part.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666); // what the umask leaves, as for every new file
+    }
+    if (file_ < 0)
+        throw InputError::in_file(name_, because("cannot be written, nor any file beside it", errno));
+    part_ = part;
+    slot_ = show_to_handler(part_);
+    keep_mode();
+}
+
+WholeFile WholeFile::continued(const fs::path& name, std::uint64_t bytes, std::uint64_t checksum)
+{
+    WholeFile out;
+    out.name_ = name.string();
+    out.is_kept_ = true;
+    if (out.open_directly(name)) {
+        if (bytes > 0)
+            throw InputError::in_file(out.name_, "is no regular file, so nothing in it can be continued");
+        return out;
+    }
+    out.enter(name);
+    const std::string part = out.target_ + ".part";
+    refuse_input(part);
+    out.file_ = open(part.c_str(), O_CREAT | O_RDWR | O_CLOEXEC | O_NOFOLLOW, 0666);
+    if (out.file_ < 0)
+        throw InputError::in_file(out.name_, because("cannot be written, nor " + part, errno));
+    if (flock(out.file_, LOCK_EX | LOCK_NB) != 0)
+        throw InputError::in_file(out.name_, "another run is writing it, as " + part);
+    out.part_ = part;
+    auto cut = [&](std::uint64_t at) {
+        if (ftruncate(out.file_, static_cast<off_t>(at)) != 0 || lseek(out.file_, static_cast<off_t>(at), SEEK_SET) < 0)
+            out.fail(errno);
+    };
+    if (bytes == 0 || begins_with(out.file_, bytes, checksum)) {
+        cut(bytes);
+    } else { // then a run that came to its end is continued, for longer
+        const int whole = open(out.target_.c_str(), O_RDONLY | O_CLOEXEC);
+        const bool fits = whole >= 0 && begins_with(whole, bytes, checksum);
+        if (fits) {
+            cut(0);
+            begins_with(whole, bytes, checksum, &out);
+        }
+        if (whole >= 0)
+            close(whole);
+        if (!fits)
+            throw InputError::in_file(out.name_, fmt::format("does not have the {} bytes that are to be continued", bytes));
+    }
+    out.keep_mode();
+    return out;
 }
 
 WholeFile::WholeFile(WholeFile&& other) noexcept
     : name_(std::move(other.name_)), target_(std::move(other.target_)), part_(std::exchange(other.part_, {})), buffer_(std::move(other.buffer_)), file_(std::exchange(other.file_, -1)),
-      slot_(std::exchange(other.slot_, -1)), is_registered_(std::exchange(other.is_registered_, false))
+      slot_(std::exchange(other.slot_, -1)), is_registered_(std::exchange(other.is_registered_, false)), is_kept_(other.is_kept_)
 {
 }
 
 WholeFile::~WholeFile()
 {
-    if (file_ >= 0)
-        close(file_);
-    if (!part_.empty())
+    struct stat now = {};
+    const bool is_empty = file_ >= 0 && fstat(file_, &now) == 0 && now.st_size == 0;
+    if (!part_.empty() && (!is_kept_ || is_empty))
         unlink(part_.c_str());
     hide_from_handler(slot_);
+    if (file_ >= 0)
+        close(file_);
     if (is_registered_) {
         const std::lock_guard lock(known().mutex);
         known().targets.erase(target_);
@@ -192,16 +276,21 @@ void WholeFile::write(std::string_view bytes)
         flush();
 }
 
-void WholeFile::commit()
+void WholeFile::sync()
 {
     flush();
+    if (fsync(file_) != 0 && errno != EINVAL && errno != EROFS) // pipes have no disk
+        fail(errno);
+}
+
+void WholeFile::commit()
+{
+    sync(); // before the rename: else a crash could leave the name with nothing in it
     if (part_.empty()) {
         if (close(std::exchange(file_, -1)) != 0 && errno != EINTR)
             fail(errno);
         return;
     }
-    if (fsync(file_) != 0 && errno != EINVAL) // before the rename: else a crash could leave the name with nothing in it
-        fail(errno);
     if (close(std::exchange(file_, -1)) != 0 && errno != EINTR)
         fail(errno);
     if (rename(part_.c_str(), target_.c_str()) != 0)
@@ -221,6 +310,17 @@ void write_whole(const fs::path& name, std::string_view bytes)
     file.commit();
 }
 
+void refuse_input(const fs::path& output)
+{
+    struct stat is = {};
+    if (stat(output.c_str(), &is) != 0)
+        return;
+    const std::lock_guard lock(known().mutex);
+    for (const std::string& input : known().inputs)
+        if (is_same(input, is))
+            throw InputError::in_file(output.string(), "is an input of this command; the output needs another name");
+}
+
 void guard_input(const fs::path& file)
 {
     struct stat is = {};
@@ -228,9 +328,9 @@ void guard_input(const fs::path& file)
         return;
     const std::lock_guard lock(known().mutex);
     for (const std::string& target : known().targets)
-        if (struct stat there = {}; stat(target.c_str(), &there) == 0 && there.st_dev == is.st_dev && there.st_ino == is.st_ino)
+        if (is_same(target, is))
             throw InputError::in_file(target, "is an input of this command; the output needs another name");
-    known().inputs.insert({is.st_dev, is.st_ino});
+    known().inputs.insert(fs::absolute(file).string());
 }
 
 void remove_partial_files() noexcept

@@ -29,12 +29,15 @@ Outcome run(const Scene& scene, const std::string& file)
     Simulation simulation(scene, file);
     Outcome out;
     const auto start = std::chrono::steady_clock::now();
-    while (simulation.frame() + 1 < simulation.frame_count() && out.failure.empty() && !interrupted())
-        for (const StepReport& r : simulation.advance()) {
+    while (simulation.frame() + 1 < simulation.frame_count() && out.failure.empty()) {
+        const auto reports = simulation.advance();
+        throw_if_interrupted(); // half a run is none
+        for (const StepReport& r : reports) {
             out.steps += static_cast<std::size_t>(r.substeps);
             if (out.failure.empty())
                 out.failure = r.failure;
         }
+    }
     out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     for (const Simulation::Body& body : simulation.bodies())
         out.positions.push_back(body.simulation.positions());
@@ -80,6 +83,7 @@ int cost_simulation(const CostSimulationOptions& options)
     Scene& scene = found.scene;
     scene.duration_s = std::min(scene.duration_s, options.duration_s);
     scene.frame_s = scene.duration_s > 0 ? scene.duration_s / std::ceil(scene.duration_s * 60) : 1.0 / 60;
+    scene.integration.cancelled = interrupted;
     pin_to_one_core();
     catch_interrupt();
 
@@ -87,10 +91,12 @@ int cost_simulation(const CostSimulationOptions& options)
     const double frame = scene.frame_s;
     const double implicit_steps[] = {frame, frame / 2, frame / 4, frame / 8, frame / 16, frame / 32};
     const double explicit_shares[] = {0.6, 0.3, 0.15};
+    std::size_t done = 0;
+    const std::size_t wanted = 2 * (1 + std::size(implicit_steps) + std::size(explicit_shares)) + 1; // runs, and the steps
     const std::pair<const char*, ElasticSpec::Model> energies[] = {{"neo-hookean", ElasticSpec::Model::neo_hookean}, {"stvk", ElasticSpec::Model::stvk}};
-    {
-        Progress progress("simulating", std::size(energies) * (1 + std::size(implicit_steps) + std::size(explicit_shares)));
-        std::size_t done = 0;
+    StepFigures steps;
+    try {
+        Progress progress("simulating", wanted);
         Scene still = scene;
         still.duration_s = 0;
         const Outcome start = run(still, found.file);
@@ -104,11 +110,7 @@ int cost_simulation(const CostSimulationOptions& options)
             const Outcome reference = run(fine, found.file);
             progress.done(++done);
             auto measure = [&](const char* integrator, const Scene& how, double step) {
-                if (interrupted())
-                    return;
                 const Outcome outcome = run(how, found.file);
-                if (interrupted())
-                    return; // half a run
                 rows.push_back({name, integrator, step > 0 ? step : scene.duration_s * static_cast<double>(scene.bodies.size()) / static_cast<double>(std::max<std::size_t>(outcome.steps, 1)),
                                 error_of(outcome, reference, start), outcome.seconds / scene.duration_s, outcome.steps, outcome.failure});
                 progress.done(++done);
@@ -129,13 +131,14 @@ int cost_simulation(const CostSimulationOptions& options)
                 measure("explicit", how, 0);
             }
         }
+        steps = measure_steps(options.seconds);
+        progress.done(++done);
+    } catch (const Interrupted&) { // whole runs are kept
     }
     mark_pareto(rows);
-    StepFigures steps;
-    if (!interrupted()) {
-        Progress progress("measuring steps", 0);
-        steps = measure_steps(options.seconds);
-    }
+    const bool is_complete = !interrupted() || !steps.rows.empty();
+    const auto frames = static_cast<std::size_t>(scene.duration_s / scene.frame_s + 0.5);
+    const Completeness completeness{frames, frames, is_complete, is_complete ? "" : interrupted_after(done, wanted, "runs")}; // every row is of all frames
 
     std::vector<nlohmann::ordered_json> records;
     for (const Row& r : rows)
@@ -145,9 +148,11 @@ int cost_simulation(const CostSimulationOptions& options)
         for (const StepFigures::Row& r : steps.rows)
             records.push_back({{"experiment", "cost"}, {"substep", "brain"}, {"nodes", r.nodes}, {"neighbours", r.neighbours}, {"us_per_substep", r.step_us},
                                {"plain_us_per_substep", r.plain_us}, {"difference_m", r.off}});
+    output.set(completeness);
     output.add_all(records);
     output.finish();
     if (!options.output.records_only()) {
+        print_note(completeness);
         fmt::print("{}: {:.3g} s simulated, one core\n\n", options.scene, scene.duration_s);
         std::vector<std::vector<std::string>> cells;
         for (const Row& r : rows)
@@ -169,8 +174,8 @@ int cost_simulation(const CostSimulationOptions& options)
         fmt::print("\n{}\n", describe(from));
     }
     std::fflush(stdout);
-    if (interrupted()) {
-        fmt::print(stderr, "cinch: interrupted after {} runs\n", rows.size());
+    if (!is_complete) {
+        fmt::print(stderr, "cinch: {}\n", completeness.note);
         return 130;
     }
     return 0;

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "experiments/guard_surface.hpp"
+#include "experiments/report/whole_file.hpp"
 #include "experiments/shipped.hpp"
 #include "toolkit/simulate/frame_file.hpp"
 #include "toolkit/surface/input_error.hpp"
@@ -45,6 +47,7 @@ FoundScene find_scene(const std::string& name, const SceneChanges& changes)
     if (!file && !is_scene(name))
         throw InputError::in_file(name, fmt::format("no such scene; known are {}, or a .json file", fmt::join(shipped_scenes(), ", ")));
     const fs::path path = file ? fs::path(name) : scene_folder() / (name + ".json");
+    guard_input(path);
     const std::string text = read_bytes(path);
     FoundScene found{parse_scene(text, file ? name : name + ".json", path.parent_path().string()), file ? name : name + ".json", 0};
     Scene& scene = found.scene;
@@ -72,6 +75,8 @@ FoundScene find_scene(const std::string& name, const SceneChanges& changes)
         scene.integration.method = changes.integrator == "explicit" ? Integration::Method::explicit_euler : Integration::Method::implicit_euler;
     // The duration is left out, so that a run can be continued for longer.
     std::string surfaces; // files that it names may change beside it
+    for (const SceneBody& body : scene.bodies)
+        guard_surface(body.surface);
     for (const SceneBody& body : scene.bodies)
         if (std::error_code error; fs::is_regular_file(body.surface, error))
             surfaces += fmt::format("{}|", checksum(read_bytes(body.surface)));

@@ -66,8 +66,7 @@ FrameFormat format_of(const std::string& file) { return file.empty() ? FrameForm
 
 struct Checkpoint {
     struct Header {
-        std::uint64_t identity = 0;                    ///< of the scene
-        std::uint64_t bytes = 0, written = 0, sum = 0; ///< of the file of frames; frames in it; its checksum
+        std::uint64_t identity = 0, bytes = 0, checksum = checksum_of_nothing, written = 0; ///< of the scene; of the file of frames; frames in it
         FrameFormat format = FrameFormat::none;
         std::uint64_t program_bytes = 0, state_bytes = 0; ///< what follows
     } header;
@@ -105,28 +104,6 @@ Checkpoint read_checkpoint(const std::string& file)
     return checkpoint;
 }
 
-/// Of the first bytes of a file; nothing if there are not so many.
-std::optional<std::uint64_t> checksum_of_file(const std::string& file, std::uint64_t bytes)
-{
-    std::ifstream in(file, std::ios::binary);
-    std::vector<char> block(1 << 20);
-    std::uint64_t sum = checksum_of_nothing;
-    while (bytes > 0) {
-        const std::uint64_t wanted = std::min<std::uint64_t>(bytes, block.size());
-        if (!in.read(block.data(), static_cast<std::streamsize>(wanted)))
-            return std::nullopt;
-        sum = checksum({block.data(), wanted}, sum);
-        bytes -= wanted;
-    }
-    return sum;
-}
-
-void require(std::ostream& out, const std::string& file)
-{
-    if (!out)
-        throw InputError::in_file(file, "cannot be written; is the disk full?");
-}
-
 } // namespace
 
 FrameOutput::FrameOutput(const SimulateOptions& options, const FoundScene& scene, Simulation& simulation)
@@ -144,59 +121,73 @@ FrameOutput::FrameOutput(const SimulateOptions& options, const FoundScene& scene
         fs::create_directories(options.meshes, error);
         if (!fs::is_directory(options.meshes))
             throw InputError::in_file(options.meshes, "is no folder and cannot be made one");
+        for (const auto& there : fs::directory_iterator(options.meshes, error)) // of which any may come to be written
+            if (is_mesh_name(there.path()))
+                refuse_input(there.path());
     }
-    if (!checkpoint_.empty()) {
-        std::error_code error;
-        if (fs::exists(checkpoint_, error) && !fs::is_regular_file(checkpoint_, error))
-            throw InputError::in_file(checkpoint_, "is no regular file");
-        if (!std::ofstream(checkpoint_ + ".new"))
-            throw InputError::in_file(checkpoint_, "cannot be written");
+    std::error_code error;
+    if (!checkpoint_.empty() && fs::exists(checkpoint_, error) && !fs::is_regular_file(checkpoint_, error))
+        throw InputError::in_file(checkpoint_, "is no regular file");
+    std::optional<WholeFile> can_be_written;
+    if (!checkpoint_.empty())
+        can_be_written.emplace(checkpoint_);
+    if (!options.resume.empty()) {
+        resume(simulation);
+    } else if (!options.frames.empty()) {
+        frames_.emplace(WholeFile::continued(options.frames));
+        checksum_ = checksum({});
+        if (!is_text(options.frames))
+            append(frame_header(layout_));
     }
-    if (options.resume.empty()) {
-        if (!options.frames.empty()) {
-            frames_.open(options.frames, std::ios::binary | std::ios::trunc);
-            if (!is_text(options.frames))
-                append(frame_header(layout_));
-            require(frames_, options.frames);
-        }
-        return;
-    }
-    const Checkpoint checkpoint = read_checkpoint(options.resume);
+}
+
+// NAME-FRAME.ply of one of the bodies, as write_meshes makes it.
+bool FrameOutput::is_mesh_name(const fs::path& file) const
+{
+    const std::string stem = file.stem().string();
+    const std::size_t dash = stem.rfind('-');
+    return file.extension() == "." + options_.mesh_format && dash != std::string::npos && stem.find_first_not_of("0123456789", dash + 1) == std::string::npos &&
+           std::find(names_.begin(), names_.end(), stem.substr(0, dash)) != names_.end();
+}
+
+void FrameOutput::resume(Simulation& simulation)
+{
+    const Checkpoint checkpoint = read_checkpoint(options_.resume);
     if (checkpoint.program != this_program())
-        throw InputError::in_file(options.resume, fmt::format("was written by cinch {}, this is {}, whose frames may differ; continue with the same program", checkpoint.program, this_program()));
+        throw InputError::in_file(options_.resume, fmt::format("was written by cinch {}, this is {}, whose frames may differ; continue with the same program", checkpoint.program, this_program()));
     if (checkpoint.header.identity != identity_)
-        throw InputError::in_file(options.resume, "is of another scene, or of other settings than these");
-    if (checkpoint.header.format != format_of(options.frames))
-        throw InputError::in_file(options.resume, checkpoint.header.format == FrameFormat::none     ? "is of a run without --frames"
-                                                  : checkpoint.header.format == FrameFormat::binary ? "continues with --frames FILE, binary"
-                                                                                                    : "continues with --frames FILE.jsonl");
+        throw InputError::in_file(options_.resume, "is of another scene, or of other settings than these");
+    if (checkpoint.header.format != format_of(options_.frames))
+        throw InputError::in_file(options_.resume, checkpoint.header.format == FrameFormat::none     ? "is of a run without --frames"
+                                                   : checkpoint.header.format == FrameFormat::binary ? "continues with --frames FILE, binary"
+                                                                                                     : "continues with --frames FILE.jsonl");
     std::istringstream state(checkpoint.state);
     simulation.restore(state);
     if (!state || state.peek() != std::istringstream::traits_type::eof())
-        throw InputError::in_file(options.resume, "does not fit this scene");
+        throw InputError::in_file(options_.resume, "does not fit this scene");
     if (simulation.frame() >= simulation.frame_count())
-        throw InputError::in_file(options.resume, fmt::format("is at frame {}, and this run ends with frame {}; give it a longer --duration", simulation.frame(), simulation.frame_count() - 1));
+        throw InputError::in_file(options_.resume, fmt::format("is at frame {}, and this run ends with frame {}; give it a longer --duration", simulation.frame(), simulation.frame_count() - 1));
     for (const Simulation::Body& body : simulation.bodies())
         for (const Field* field : {&body.simulation.positions(), &body.simulation.velocities()})
             if (!std::all_of(field->begin(), field->end(), [](double x) { return std::isfinite(x); }))
-                throw InputError::in_file(options.resume, "has numbers for body '" + body.name + "' that are not finite");
-    const std::uint64_t frames = simulation.frame() + 1;
-    if (checkpoint.header.format != FrameFormat::none && checkpoint.header.written != frames)
-        throw InputError::in_file(options.resume, fmt::format("is at frame {}, but says that {} frames are written", simulation.frame(), checkpoint.header.written));
+                throw InputError::in_file(options_.resume, "has numbers for body '" + body.name + "' that are not finite");
+    if (const std::uint64_t frames = simulation.frame() + 1; checkpoint.header.format != FrameFormat::none && checkpoint.header.written != frames)
+        throw InputError::in_file(options_.resume, fmt::format("is at frame {}, but says that {} frames are written", simulation.frame(), checkpoint.header.written));
     bytes_ = checkpoint.header.bytes;
+    checksum_ = checkpoint.header.checksum;
     written_ = checkpoint.header.written;
-    sum_ = checkpoint.header.sum;
-    if (options.frames.empty())
-        return;
     std::error_code error;
-    const std::uintmax_t there = fs::file_size(options.frames, error);
-    if (error || there < bytes_)
-        throw InputError::in_file(options.frames, fmt::format("does not have the {} bytes that {} continues", bytes_, options.resume));
-    if (checksum_of_file(options.frames, bytes_) != sum_)
-        throw InputError::in_file(options.frames, fmt::format("is not what {} continues: its first {} bytes are others", options.resume, bytes_));
-    fs::resize_file(options.frames, bytes_); // what came after the checkpoint comes again
-    frames_.open(options.frames, std::ios::binary | std::ios::app);
-    require(frames_, options.frames);
+    if (!options_.frames.empty() && fs::equivalent(options_.frames, options_.resume, error))
+        throw InputError::in_file(options_.frames, "is the checkpoint to continue from; the frames need another name");
+    if (!options_.frames.empty()) // what came after the checkpoint comes again
+        frames_.emplace(WholeFile::continued(options_.frames, bytes_, checksum_));
+}
+
+void FrameOutput::append(const std::string& bytes)
+{
+    frames_->write(bytes);
+    bytes_ += bytes.size();
+    checksum_ = checksum(bytes, checksum_);
 }
 
 std::string FrameOutput::write(Simulation& simulation)
@@ -217,7 +208,6 @@ std::string FrameOutput::write(Simulation& simulation)
                                                             : frame_record(layout_, simulation.frame(), simulation.time_s(), maps);
         append(record);
         ++written_;
-        require(frames_, options_.frames);
     }
     return options_.meshes.empty() ? "" : write_meshes(simulation.frame(), maps, simulation);
 }
@@ -232,27 +222,17 @@ std::string FrameOutput::write_meshes(std::size_t frame, std::span<const std::ve
             if (!(v.cwiseAbs().maxCoeff() <= std::numeric_limits<float>::max()))
                 return fmt::format("body '{}' at {:.6g} s: a position is beyond what a mesh file holds", names_[b], simulation.time_s());
         const fs::path file = fs::path(options_.meshes) / fmt::format("{}-{:05}.{}", names_[b], frame, options_.mesh_format);
-        std::ofstream out(file, std::ios::binary);
+        std::ostringstream out;
         (options_.mesh_format == "obj" ? write_obj : write_ply)(out, vertices, mesh.triangles);
-        out.flush();
-        require(out, file.string());
+        write_whole(file, out.view());
     }
     return "";
 }
 
-void FrameOutput::append(const std::string& bytes)
-{
-    frames_ << bytes;
-    bytes_ += bytes.size();
-    sum_ = checksum(bytes, sum_);
-}
-
 void FrameOutput::save(const Simulation& simulation)
 {
-    if (frames_.is_open()) {
-        frames_.flush();
-        require(frames_, options_.frames);
-    }
+    if (frames_)
+        frames_->sync();
     if (checkpoint_.empty())
         return;
     std::ostringstream out;
@@ -260,19 +240,19 @@ void FrameOutput::save(const Simulation& simulation)
     std::ostringstream state;
     simulation.save(state);
     const std::string program = this_program();
-    const Checkpoint::Header header{identity_, bytes_, written_, sum_, format_of(options_.frames), program.size(), state.view().size()};
+    const Checkpoint::Header header{identity_, bytes_, checksum_, written_, format_of(options_.frames), program.size(), state.view().size()};
     write_raw<Checkpoint::Header>(out, {&header, 1});
     out << program << state.view();
     const std::uint64_t sum = checksum(out.view());
     write_raw<std::uint64_t>(out, {&sum, 1});
-    const std::string temporary = checkpoint_ + ".new";
-    {
-        std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
-        file << out.view();
-        file.flush();
-        require(file, temporary);
-    }
-    fs::rename(temporary, checkpoint_); // the old one or the new one, never half of one
+    write_whole(checkpoint_, out.view());
+}
+
+void FrameOutput::commit()
+{
+    if (frames_)
+        frames_->commit();
+    frames_.reset();
 }
 
 } // namespace cinch

@@ -70,24 +70,35 @@ struct Result {
     std::size_t frames = 0, steps = 0; ///< advanced; steps over all bodies
     double seconds = 0; ///< of all bodies, one after the other
     std::string failure;
+    std::size_t first = 0, last = 0; ///< frame that the run begins with, and that it is to come to
+
+    bool is_complete() const { return failure.empty() && first + frames >= last; }
+    Completeness completeness() const
+    {
+        const std::size_t wanted = last > first ? last - first : 0;
+        return {frames, wanted, is_complete(), is_complete() ? "" : failure.empty() ? interrupted_after(frames, wanted, "frames") : fmt::format("stopped after {} of {} frames", frames, wanted)};
+    }
 };
 
 Json energies_of(const Simulation& simulation, const std::string& scene, std::size_t b, const StepReport& r)
 {
     return {{"experiment", "simulate"}, {"scene", scene}, {"frame", simulation.frame()}, {"time_s", simulation.time_s()}, {"body", simulation.bodies()[b].name},
-            {"substeps", r.substeps}, {"iterations", r.iterations}, {"products", r.products}, {"residual_m_per_s2", r.residual}, {"kinetic_j", r.kinetic}, {"potential_j", r.potential}};
+            {"substeps", r.substeps}, {"iterations", r.iterations}, {"products", r.products}, {"residual_m_per_s2", r.residual}, {"kinetic_j", r.kinetic}, {"potential_j", r.potential},
+            {"frames_done", 1}, {"frames", 1}, {"complete", true}}; // this one
 }
 
 Result run(const SimulateOptions& options, Simulation& simulation, FrameOutput& output, RecordOutput& records)
 {
     Result result;
     result.bodies.resize(simulation.bodies().size());
+    result.first = simulation.frame();
+    result.last = simulation.frame_count() - 1;
     if (options.resume.empty())
         result.failure = output.write(simulation);
     if (!result.failure.empty())
         return result;
     output.save(simulation);
-    const std::size_t first = simulation.frame(), last = simulation.frame_count() - 1;
+    const std::size_t first = result.first, last = result.last;
     Progress progress("simulating frames", last > first ? last - first : 0);
     while (simulation.frame() < last && !interrupted()) {
         const std::vector<StepReport> reports = simulation.advance();
@@ -146,7 +157,7 @@ void add_totals(const SimulateOptions& options, const Simulation& simulation, co
         nodes += body.simulation.body().size();
     }
     records.add(Json{{"experiment", "simulate"}, {"scene", options.scene}, {"effects", names}, {"bodies", simulation.bodies().size()}, {"nodes", nodes},
-                            {"frames", result.frames}, {"steps", result.steps}, {"ms_per_step", ms_per_step(result.seconds, result)}, {"time_s", simulation.time_s()},
+                            {"steps", result.steps}, {"ms_per_step", ms_per_step(result.seconds, result)}, {"time_s", simulation.time_s()},
                             {"load_report", simulation.notes()}, {"failure", result.failure}});
     for (const auto& [name, totals] : effects)
         records.add(Json{{"experiment", "simulate"}, {"scene", options.scene}, {"effect", name}, {"bodies", totals.bodies}, {"calls", totals.calls},
@@ -164,6 +175,7 @@ void print_tables(const SimulateOptions& options, const Simulation& simulation, 
         nodes += body.simulation.body().size();
         neighbours += body.simulation.body().neighbour.size();
     }
+    print_note(result.completeness());
     fmt::print("{}\n", folded(options.scene + ": " + simulation.scene().about));
     fmt::print("{}, {}, {}, {:.1f} neighbours each\n", counted(simulation.bodies().size(), "body", "bodies"), counted(vertices, "vertex", "vertices"),
                counted(nodes, "simulation node", "simulation nodes"), static_cast<double>(neighbours) / static_cast<double>(nodes));
@@ -246,17 +258,21 @@ int simulate(const SimulateOptions& options)
     FrameOutput output(options, found, simulation);
     catch_interrupt();
     const Result result = run(options, simulation, output, records);
+    if (result.is_complete())
+        output.commit();
+    records.set(result.completeness());
     add_totals(options, simulation, result, records);
     records.finish();
     if (!options.output.records_only())
         print_tables(options, simulation, result, from);
     std::fflush(stdout);
+    const std::string part = output.part().empty() ? "" : "; the frames so far are in " + output.part();
     if (!result.failure.empty()) {
-        fmt::print(stderr, "cinch: {}\n", result.failure);
+        fmt::print(stderr, "cinch: {}{}\n", result.failure, part);
         return 1;
     }
-    if (simulation.frame() + 1 < simulation.frame_count()) {
-        fmt::print(stderr, "cinch: interrupted at frame {} of {}\n", simulation.frame(), simulation.frame_count() - 1);
+    if (!result.is_complete()) {
+        fmt::print(stderr, "cinch: interrupted at frame {} of {}{}\n", simulation.frame(), result.last, part);
         return 130;
     }
     return 0;

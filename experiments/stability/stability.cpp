@@ -44,7 +44,7 @@ StabilityProof prove(const std::vector<StabilityState>& states)
         const Bvh bvh = build_bvh(state.surface, 1);
         if (bvh.bvs.empty())
             continue;
-        const exact::Verifier verifier(state.surface, bvh);
+        const exact::Verifier verifier(state.surface, bvh, throw_if_interrupted);
         for (const Method method : {Method::convex, Method::eq12, Method::limited, Method::local, Method::support, Method::linear, Method::best})
             for (const Precision precision : {Precision::float32, Precision::float64})
                 for (const int kdop : {6, 14}) {
@@ -87,11 +87,10 @@ int stability(const StabilityOptions& options)
         std::fflush(stdout);
     };
     std::size_t done = 0;
-    {
+    try {
         Progress progress("hard cases", cases.size());
         for (const StabilityCase& c : cases) {
-            if (interrupted())
-                break;
+            throw_if_interrupted();
             StabilityOutcome outcome;
             try {
                 outcome = c.run(options.missing);
@@ -105,15 +104,23 @@ int stability(const StabilityOptions& options)
             }
             progress.done(++done);
         }
+    } catch (const Interrupted&) { // cases before it are kept
     }
+    const bool is_complete = done == cases.size();
+    const Completeness completeness{0, 0, is_complete, is_complete ? "" : interrupted_after(done, cases.size(), "cases")};
+    output.set(completeness);
+    if (!is_complete) // those that came before had no way to know
+        output.add({{"experiment", "stability"}, {"cases_done", done}, {"cases", cases.size()}});
     output.finish();
+    if (!options.output.records_only() && !is_complete)
+        fmt::print("\n{}", completeness.note);
     if (!options.output.records_only())
         fmt::print("\n{} of {} rows pass\n{}\n", run - failed, run, describe(from));
     if (failed)
         return 1;
-    if (done < cases.size()) {
+    if (!is_complete) {
         std::fflush(stdout);
-        fmt::print(stderr, "cinch: interrupted after {} of {} cases\n", done, cases.size());
+        fmt::print(stderr, "cinch: {}\n", completeness.note);
         return 130;
     }
     return 0;

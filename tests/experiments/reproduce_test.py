@@ -97,7 +97,7 @@ def main():
     damaged = folder / "cost.jsonl"
     damaged.write_bytes(damaged.read_bytes()[:-200])
     report = subprocess.run([program, "report", str(folder)], capture_output=True, text=True)
-    assert report.returncode == 1 and "cost.jsonl:" in report.stderr, (report.returncode, report.stderr)
+    assert report.returncode == 2 and "cost.jsonl:" in report.stderr, (report.returncode, report.stderr)
     page = Page((folder / "report.html").read_text())
     assert "cost" not in page.ids and "table-4" in page.ids
     repaired = subprocess.run(command, capture_output=True, text=True)

@@ -90,7 +90,9 @@ TEST_CASE("a run that is interrupted, or killed, and resumed writes the bytes of
     CHECK(stopped.status == 130);
     CHECK(stopped.err.find("interrupted at frame") != std::string::npos);
     CHECK(stopped.out.find("elastic") != std::string::npos); // what is done is shown
-    const FrameFile kept = read_frames(in("long"));
+    CHECK(stopped.err.find("the frames so far are in ") != std::string::npos);
+    CHECK_FALSE(fs::exists(in("long")));
+    const FrameFile kept = read_frames(in("long.part"));
     CHECK_FALSE(kept.cut_off);
     CHECK(kept.bodies[0].frames.size() > 1);
 }
@@ -185,7 +187,8 @@ TEST_CASE("a step that cannot be solved is reported with time and body, and no f
     const auto run = test::cinch("simulate " + scene.string() + " --frames " + (folder.path() / "f").string());
     CHECK(run.status == 1);
     CHECK(run.err.find("body 'bar' at 0 s: no minimum within 1 Newton iterations") != std::string::npos);
-    CHECK(read_frames(folder.path() / "f").bodies[0].frames.size() == 1);
+    CHECK_FALSE(fs::exists(folder.path() / "f"));
+    CHECK(read_frames(folder.path() / "f.part").bodies[0].frames.size() == 1);
 }
 
 TEST_CASE("santa-ring with 550 nodes is stable at 1/60 s over four decades of stiffness, and gains no energy without work")

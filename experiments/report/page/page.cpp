@@ -78,7 +78,7 @@ const char* reading = "“Here” is what this program measured; “paper / here
 
 } // namespace
 
-std::string command_page(const Results& results)
+std::string command_page(const Results& results, const std::string& note)
 {
     const std::vector<Section> sections = sections_of(results);
     std::string name = "cinch", line;
@@ -87,7 +87,9 @@ std::string command_page(const Results& results)
         line = results.all().front().word("command");
     }
     std::string body = fmt::format("<header>\n<h1>{}</h1>\n<p class=\"lead\"><code>{}</code></p>\n</header>\n", escaped(name), escaped(line));
-    const std::string claims = claims_section(sections, false);
+    if (!note.empty())
+        body += fmt::format("<p class=\"damage\"><strong>Not all of it:</strong> {}</p>\n", escaped(note));
+    const std::string claims = note.empty() ? claims_section(sections, false) : "";
     if (!claims.empty())
         body += html::paragraph(reading) + claims;
     bool paper = false;

@@ -26,6 +26,13 @@ std::vector<const Record*> totals(const Results& results)
 
 std::string count(const Traced& x) { return figure(x, x.known() && x.value >= 0 && x.value < 1e15 ? grouped(static_cast<std::size_t>(x.value)) : html::digits(x.value)); }
 
+// "3", or "2 of 3" where not all were proven.
+std::string frames_of(const Record& r)
+{
+    const Traced wanted = Results::number(r, "frames"), done = Results::number(r, "frames_done");
+    return done.known() && done.value != wanted.value ? cell(done, fmt::format("{:.0f} of {:.0f}", done.value, wanted.value)) : cell(wanted);
+}
+
 std::string runs(const Results& results)
 {
     std::vector<std::string> rows;
@@ -33,7 +40,7 @@ std::string runs(const Results& results)
         auto number = [&](const char* field) { return Results::number(*r, field); };
         const std::string update = r->word("update");
         rows.push_back(html::row({html::text_cell(r->word("input"), "l"), html::text_cell(update.empty() ? "all BVs, by the method" : "after a query, " + update, "l"), html::text_cell(r->word("method"), "l"),
-                                  html::text_cell(r->word("precision"), "l"), cell(number("frames")), html::raw_cell(count(number("bounds")), "n"), html::raw_cell(count(number("proven")), "n"),
+                                  html::text_cell(r->word("precision"), "l"), frames_of(*r), html::raw_cell(count(number("bounds")), "n"), html::raw_cell(count(number("proven")), "n"),
                                   html::raw_cell(count(number("violated")), "n"), cell(number("seconds"))}));
     }
     if (rows.empty())

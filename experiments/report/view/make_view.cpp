@@ -59,6 +59,7 @@ std::vector<std::vector<Vec3>> evaluate(const std::vector<DrawnBody>& bodies, st
         const SurfaceEvaluator<double> evaluator(body.input.surface);
         std::vector<Vec3> positions(body.input.surface.mesh.vertices.size());
         for (std::size_t f = 0; f < frames; ++f) {
+            throw_if_interrupted();
             evaluator(body.input.clip.frames[f], positions);
             for (const std::uint32_t v : body.vertex) {
                 if (!positions[v].allFinite())
@@ -174,9 +175,11 @@ std::vector<std::int32_t> bounds_by(Method method, const ViewRequest& request, c
     options.methods = method;
     options.kdop = request.kdop;
     for (std::uint32_t b = 0; b < bodies.size(); ++b) {
+        throw_if_interrupted();
         Bounder bounder(bodies[b].bvh, bodies[b].input.surface, options, Bounder::Leaves::included);
         std::vector<double> supports(bodies[b].bvs(bvs.level.size() - 1) * k);
         for (std::size_t f = 0; f < frames; ++f) {
+            throw_if_interrupted();
             bounder.begin(bodies[b].input.clip.frames[f]);
             parallel_blocks(supports.size() / k, 1, [&](std::size_t first, std::size_t last) {
                 bounder.bound(first, last, std::span(supports).subspan(first * k, (last - first) * k));
@@ -202,11 +205,13 @@ Contacts contacts(const std::vector<DrawnBody>& bodies, std::size_t frames)
     Collider collider{LazyOptions{}};
     std::vector<std::uint32_t> base{0};
     for (const DrawnBody& body : bodies) {
+        throw_if_interrupted();
         collider.add(body.bvh, body.input.surface);
         base.push_back(base.back() + static_cast<std::uint32_t>(body.bvh.triangle.size()));
     }
     std::vector<BodyFrame> now(bodies.size());
     for (std::size_t f = 0; f < frames; ++f) {
+        throw_if_interrupted();
         for (std::size_t b = 0; b < bodies.size(); ++b)
             now[b] = {bodies[b].input.clip.frames[f]};
         collider.update(now);
@@ -256,8 +261,10 @@ nlohmann::ordered_json make_view(const ViewRequest& request)
 
     std::vector<DrawnBody> bodies;
     bodies.reserve(inputs.bodies.size());
-    for (const Input& body : inputs.bodies)
+    for (const Input& body : inputs.bodies) {
+        throw_if_interrupted();
         bodies.emplace_back(body);
+    }
     const std::vector<double>& times = inputs.bodies[0].clip.time_s;
     const std::size_t frames = times.size();
     const DrawnBvs bvs(bodies, request.levels);
@@ -283,13 +290,21 @@ nlohmann::ordered_json make_view(const ViewRequest& request)
         Progress progress(fmt::format("{}: bounds for the view", request.scene), request.methods.size());
         std::size_t done = 0;
         for (const Method method : request.methods) {
-            if (interrupted() && done > 0)
+            try {
+                view["bounds"][std::string(name_of(method))] = pack(bounds_by(method, request, bodies, bvs, grid, frames), frames, bvs.bv.size(), static_cast<std::size_t>(request.kdop));
+            } catch (const Interrupted&) {
+                if (done == 0)
+                    throw;
                 break;
-            view["bounds"][std::string(name_of(method))] = pack(bounds_by(method, request, bodies, bvs, grid, frames), frames, bvs.bv.size(), static_cast<std::size_t>(request.kdop));
+            }
             progress.done(++done);
         }
     }
-    const Contacts found = contacts(bodies, frames);
+    Contacts found;
+    try {
+        found = contacts(bodies, frames);
+    } catch (const Interrupted&) { // the view is whole but for these, and says nothing of them
+    }
     if (!found.pairs_in_frame.empty())
         view["contacts"] = {{"pairs", found.pairs_in_frame}, {"count", found.triangles_in_frame}, {"triangles", pack(found.triangle, 1, found.triangle.size(), 1)}};
     return view;

@@ -49,13 +49,13 @@ std::string view_sections(std::span<const nlohmann::ordered_json> views)
     return out;
 }
 
-std::string view_page(std::span<const nlohmann::ordered_json> views)
+std::string view_page(std::span<const nlohmann::ordered_json> views, const std::string& note)
 {
     const std::string title = views.empty() ? "cinch" : escaped(views[0]["title"].get<std::string>());
     return fmt::format("<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width\">\n"
                        "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:\">\n"
-                       "<title>{}</title>\n<link rel=\"icon\" href=\"data:,\">\n</head>\n<body class=\"view-page\">\n{}</body>\n</html>\n",
-                       title, view_sections(views));
+                       "<title>{}</title>\n<link rel=\"icon\" href=\"data:,\">\n</head>\n<body class=\"view-page\">\n{}{}</body>\n</html>\n",
+                       title, note.empty() ? "" : fmt::format("<p class=\"view-note\"><strong>Not all of it:</strong> {}</p>\n", escaped(note)), view_sections(views));
 }
 
 } // namespace cinch
