@@ -318,7 +318,7 @@ void add_fuzz(CLI::App& app, FuzzOptions& o)
 {
     CLI::App& command = *app.add_subcommand("fuzz", "every method against the exact side, random cases");
     auto option = [&](const char* name, auto& value, const std::string& description) { return command.add_option(name, value, wrapped(description)); };
-    option("--seconds", o.seconds, "stop after so many seconds")->check(CLI::Range(0.0, 1e9))->option_text("X");
+    option("--seconds", o.seconds, "stop after so many seconds; 0 runs nothing")->check(CLI::Range(0.0, 1e9))->option_text("X");
     option("--cases", o.cases, "stop after so many cases [100,000 if no --seconds]")->option_text("N");
     option("--seed", o.seed, "case i of a seed is always the same [0]")->option_text("N");
     option("--family", o.family, fmt::format("only this family: {} [all in turn]", fmt::join(fuzz_families(), ", ")))
@@ -334,7 +334,7 @@ void add_fuzz(CLI::App& app, FuzzOptions& o)
         o.shard = i;
         o.shards = n;
     }, wrapped("run every N-th case, beginning with the I-th, I from 0"))->option_text("I/N");
-    option("--resume", o.resume, "keep the state in this file, and continue from it if it is there")->option_text("FILE");
+    option("--resume", o.resume, "keep the state in this file, and continue from it if it is there; it must be of the same program and options")->option_text("FILE");
     option("--corpus", o.corpus, "where shrunk failures are saved [data/hard]")->option_text("DIR");
     option("--threads", o.threads, "threads [all cores]")->check(CLI::Range(1, 1024))->option_text("N");
     add_output(command, o.output, Draws::nothing);

@@ -207,6 +207,8 @@ Inputs load_scene(const InputOptions& options)
                                  counted(triangles, "triangle", "triangles")),
                      fmt::format("{}, {:.1f} influences per vertex; simulated, {}", counted(nodes, "simulation node", "simulation nodes"),
                                  static_cast<double>(influences) / static_cast<double>(vertices), counted(inputs.bodies[0].clip.frames.size(), "frame", "frames"))};
+    const std::vector<std::string> notes = simulation.notes();
+    inputs.report.insert(inputs.report.end(), notes.begin(), notes.end());
     return inputs;
 }
 
@@ -247,7 +249,9 @@ Input load_input(const InputOptions& options)
     } else if (is_character_file(options.input)) {
         load_character(input, options);
     } else if (is_mesh_file(options.input)) {
-        input.surface.mesh = read_mesh(options.input);
+        MeshFile file = read_mesh(options.input);
+        input.surface.mesh = std::move(file.mesh);
+        input.report = std::move(file.notes);
         if (input.surface.mesh.vertices.empty() || input.surface.mesh.triangles.empty())
             throw InputError::in_file(options.input, "has no triangles; there is nothing to bound");
         if (options.weights.empty() && options.transforms.empty())

@@ -118,7 +118,7 @@ int main(int argc, char** argv)
         if (parsed.got_subcommand("corners"))
             return corners(corners_options);
         if (parsed.got_subcommand("fuzz")) {
-            if (fuzz_options.seconds == 0 && fuzz_options.cases == 0)
+            if (!fuzz_options.seconds && !fuzz_options.cases)
                 fuzz_options.cases = 100000;
             if (fuzz_options.corpus.empty() && fuzz_options.defect == Defect::none)
                 fuzz_options.corpus = "data/hard";

@@ -4,9 +4,6 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <limits>
-#include <set>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -15,24 +12,33 @@
 #include <tbb/parallel_for.h>
 #include <unistd.h>
 
+#include "experiments/fuzz/fuzz_state.hpp"
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/number.hpp"
 #include "experiments/report/provenance.hpp"
-#include "toolkit/surface/read_mesh.hpp"
+#include "experiments/report/whole_file.hpp"
+#include "toolkit/surface/input_error.hpp"
 
 namespace cinch {
 namespace {
 
-using nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::uint64_t block_cases = 2048;
+constexpr auto between_saves = std::chrono::milliseconds(100);
 
-/// What is done so far. Cases [0, next) of the shard are finished, each once.
-struct State {
-    std::uint64_t next = 0, violations = 0;
-    double seconds = 0;
-};
+const char* name_of(Defect defect)
+{
+    switch (defect) {
+    case Defect::none: return "";
+    case Defect::no_rounding: return "no-rounding";
+    case Defect::wrong_lambda: return "wrong-lambda";
+    case Defect::lower_h: return "lower-h";
+    case Defect::sum_order: return "sum-order";
+    case Defect::small_box: return "small-box";
+    }
+    return "";
+}
 
 class Session {
 public:
@@ -40,7 +46,15 @@ public:
         : options_(options), threads_(options.threads > 0 ? options.threads : tbb::info::default_concurrency()), terminal_(isatty(STDERR_FILENO) == 1),
           output_(options.output, provenance(threads_, options.seed))
     {
-        load_state();
+        if (options_.resume.empty())
+            return;
+        const Provenance from = provenance(threads_, options_.seed);
+        file_.emplace(options_.resume, FuzzSettings{from.version, from.commit, options_.seed, options_.family, options_.shard, options_.shards, name_of(options_.defect)});
+        state_ = file_->found();
+        resumed_from_ = state_.next;
+        seconds_before_ = state_.seconds;
+        if (options_.cases && state_.next > *options_.cases)
+            throw InputError::in_file(options_.resume, fmt::format("field \"next\": {} cases are done, more than --cases {}", state_.next, *options_.cases));
     }
 
     int run()
@@ -50,7 +64,7 @@ public:
         start_ = Clock::now();
         while (!interrupted() && !finished()) {
             run_block();
-            if (Clock::now() - saved_ > std::chrono::seconds(1))
+            if (Clock::now() - saved_ > between_saves)
                 save_state();
             show();
         }
@@ -66,13 +80,13 @@ private:
 
     bool finished() const
     {
-        return (options_.cases > 0 && state_.next >= options_.cases) || (options_.seconds > 0 && elapsed() >= options_.seconds);
+        return (options_.cases && state_.next >= *options_.cases) || (options_.seconds && elapsed() >= *options_.seconds);
     }
 
     void run_block()
     {
         const std::uint64_t first = state_.next;
-        const std::uint64_t count = options_.cases > 0 ? std::min(block_cases, options_.cases - first) : block_cases;
+        const std::uint64_t count = options_.cases ? std::min(block_cases, *options_.cases - first) : block_cases;
         std::vector<std::string> faults(count);
         tbb::parallel_for(tbb::blocked_range<std::uint64_t>(0, count, 64), [&](const auto& range) {
             for (std::uint64_t i = range.begin(); i < range.end(); ++i)
@@ -94,15 +108,18 @@ private:
         ++state_.violations;
         const FuzzCase found = draw(of_shard);
         // The first failure of each family is shrunk: a broken bound fails everywhere.
-        if (!shrunk_.insert(found.family).second)
+        if (!state_.shrunk.insert(found.family).second)
             return;
         const FuzzCase smallest = shrink(found, options_.defect);
         const std::string text = to_json(smallest, find_fault(smallest, options_.defect));
         std::string place;
         if (!options_.corpus.empty()) {
-            std::filesystem::create_directories(options_.corpus);
+            std::error_code error;
+            std::filesystem::create_directories(options_.corpus, error);
+            if (!std::filesystem::is_directory(options_.corpus, error))
+                throw InputError::in_file(options_.corpus, "is no folder and cannot be made one");
             const auto path = std::filesystem::path(options_.corpus) / fmt::format("{}-{:x}.json", smallest.family, std::hash<std::string>{}(text));
-            std::ofstream(path) << text << '\n';
+            write_whole(path, text + "\n");
             place = path.string();
         }
         if (terminal_)
@@ -117,38 +134,12 @@ private:
         std::fflush(stdout);
     }
 
-    void load_state()
-    {
-        if (options_.resume.empty() || !std::filesystem::exists(options_.resume))
-            return;
-        try {
-            const json s = json::parse(read_bytes(options_.resume));
-            if (s.at("seed") != options_.seed || s.at("family") != options_.family || s.at("shard") != options_.shard || s.at("shards") != options_.shards)
-                throw InputError::in_file(options_.resume, "was written with another --seed, --family or --shard; use the same, or another file");
-            state_ = {s.at("next"), s.at("violations"), s.at("seconds")};
-            resumed_from_ = state_.next;
-        } catch (const json::exception& error) {
-            throw InputError::in_file(options_.resume, std::string("is not a state file: ") + error.what());
-        }
-    }
-
-    // To a temporary file first, then renamed over: at any moment the file holds one whole state.
     void save_state()
     {
         saved_ = Clock::now();
-        if (options_.resume.empty())
-            return;
-        const std::string temporary = options_.resume + ".tmp";
-        {
-            std::ofstream out(temporary);
-            out << json{{"seed", options_.seed}, {"family", options_.family}, {"shard", options_.shard}, {"shards", options_.shards},
-                        {"next", state_.next}, {"violations", state_.violations}, {"seconds", state_.seconds + elapsed()}}
-                       .dump()
-                << '\n';
-            if (!out.flush())
-                throw InputError::in_file(temporary, "cannot be written");
-        }
-        std::filesystem::rename(temporary, options_.resume);
+        state_.seconds = seconds_before_ + elapsed();
+        if (file_)
+            file_->save(state_);
     }
 
     void show() const
@@ -157,8 +148,8 @@ private:
             return;
         const double now = elapsed();
         std::string left;
-        if (options_.seconds > 0)
-            left = ", " + duration(std::max(0.0, options_.seconds - now)) + " left";
+        if (options_.seconds)
+            left = ", " + duration(std::max(0.0, *options_.seconds - now)) + " left";
         fmt::print(stderr, "\r\x1b[K{} cases, {} per second, {} violations{}", grouped(state_.next),
                    grouped(static_cast<std::size_t>(static_cast<double>(state_.next - resumed_from_) / std::max(now, 1e-3))), grouped(state_.violations), left);
         std::fflush(stderr);
@@ -169,7 +160,7 @@ private:
         const bool is_complete = !interrupted() || finished();
         output_.set({0, 0, is_complete, is_complete ? "" : fmt::format("interrupted after {} cases", grouped(state_.next))});
         const Provenance from = provenance(threads_, options_.seed);
-        const double seconds = state_.seconds + elapsed();
+        const double seconds = state_.seconds;
         output_.add({{"experiment", "fuzz"}, {"cases", state_.next}, {"violations", state_.violations}, {"seconds", seconds}, {"family", options_.family},
                      {"shard", options_.shard}, {"shards", options_.shards}});
         output_.finish();
@@ -185,10 +176,11 @@ private:
     int threads_;
     bool terminal_;
     RecordOutput output_;
-    State state_;
+    std::optional<FuzzStateFile> file_;
+    FuzzState state_;
     std::uint64_t resumed_from_ = 0;
-    std::set<std::string> shrunk_;
-    Clock::time_point start_, saved_ = Clock::now();
+    double seconds_before_ = 0; ///< of a resumed state
+    Clock::time_point start_, saved_;
 };
 
 } // namespace

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "experiments/fuzz/fuzz_case.hpp"
+#include "experiments/report/interrupt.hpp"
 
 namespace cinch {
 namespace {
@@ -65,7 +66,7 @@ bool is_valid(const FuzzCase& c)
 FuzzCase shrink(FuzzCase problem, Defect defect)
 {
     auto accept = [&](FuzzCase smaller) {
-        if (!is_valid(smaller) || find_fault(smaller, defect).empty())
+        if (interrupted() || !is_valid(smaller) || find_fault(smaller, defect).empty())
             return false;
         problem = std::move(smaller);
         return true;

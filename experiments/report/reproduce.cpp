@@ -6,14 +6,12 @@
 #include <filesystem>
 #include <fstream>
 
-#include <fcntl.h>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include "experiments/report/chart.hpp"
 #include "experiments/report/child.hpp"
+#include "experiments/report/file_lock.hpp"
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/number.hpp"
 #include "experiments/report/page/page.hpp"
@@ -29,24 +27,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-
-/// Held while results are written. Two runs at once would take turns in spoiling each other's measurements.
-class FolderLock {
-public:
-    explicit FolderLock(const fs::path& folder) : file_(open((folder / ".lock").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0644))
-    {
-        if (file_ < 0)
-            throw InputError::in_file(folder.string(), "cannot be written");
-        if (flock(file_, LOCK_EX | LOCK_NB) != 0)
-            throw InputError::in_file(folder.string(), "another 'cinch reproduce' is writing there; wait for it, or use another --out");
-    }
-    ~FolderLock() { close(file_); }
-    FolderLock(const FolderLock&) = delete;
-    FolderLock& operator=(const FolderLock&) = delete;
-
-private:
-    int file_;
-};
 
 std::string command_of(const std::vector<std::string>& arguments) { return fmt::format("cinch {}", fmt::join(arguments, " ")); }
 
@@ -101,10 +81,7 @@ Outcome run(const Stage& stage, const ReproduceOptions& options)
     }
     if (lines == 0)
         return Outcome::failed;
-    WholeFile whole(file);
-    whole.write(read_bytes(part));
-    whole.write(closing_line(stage, options, lines, status, seconds) + "\n");
-    whole.commit();
+    write_whole(file, sealed(read_bytes(part), closing_line(stage, options, lines, status, seconds)));
     fs::remove(part, ignored);
     return status == 0 ? Outcome::stored : Outcome::check_failed;
 }
@@ -141,7 +118,8 @@ int reproduce(const ReproduceOptions& options)
     require_gnuplot("cinch reproduce");
     std::error_code error;
     fs::create_directories(options.out, error);
-    const FolderLock lock(options.out);
+    // Two runs at once would take turns in spoiling each other's measurements.
+    const FileLock lock(fs::path(options.out) / ".lock", options.out, "another 'cinch reproduce' is writing there; wait for it, or use another --out");
     catch_interrupt();
     std::vector<Stage> wanted;
     double left = 0;

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "toolkit/simulate/frame_file.hpp"
+
 namespace cinch {
 namespace {
 
@@ -36,6 +38,8 @@ constexpr std::array texts{"experiment", "command", "commit", "version", "cpu", 
 constexpr std::array numbers{"seed", "threads", "n", "vertices", "ns_per_bound", "level", "bvs", "mean_ratio", "max_ratio", "kdop",
                              "below_exact", "ratio_to_double", "frames", "bodies", "evaluate_ms", "update_ms", "query_ms", "total_ms", "pairs", "pairs_differing", "megabytes_per_body",
                              "mean_vertices", "mean_bounds", "mean_box_tests", "passes", "gap_percent", "least_n", "most_n", "bounds", "proven", "violated", "seconds", "lines", "status"};
+constexpr std::array counts{"seed", "threads", "level", "bvs", "kdop", "frames", "bodies", "vertices", "bounds", "proven", "violated", "lines", "status"};
+constexpr std::array signed_numbers{"gap_percent"}; // the others are counts, sizes and times
 constexpr std::array required{"experiment", "command", "commit", "seed", "cpu"};
 
 std::string fault(const Json& record)
@@ -51,10 +55,29 @@ std::string fault(const Json& record)
     for (const char* name : numbers)
         if (record.contains(name) && !record[name].is_number() && !record[name].is_null())
             return fmt::format("\"{}\" must be a number or null", name);
+    for (const char* name : counts)
+        if (record.contains(name) && record[name].is_number() && !record[name].is_number_unsigned())
+            return fmt::format("\"{}\" is {}, which is no count", name, record[name].dump());
+    for (const char* name : numbers)
+        if (record.contains(name) && record[name].is_number() && record[name].get<double>() < 0 && std::find(signed_numbers.begin(), signed_numbers.end(), std::string_view(name)) == signed_numbers.end())
+            return fmt::format("\"{}\" is negative", name);
     return "";
 }
 
+// The end of a closing line: ,"checksum":"0123456789abcdef"}
+constexpr std::string_view seal_begin = ",\"checksum\":\"", seal_end = "\"}";
+constexpr std::size_t seal_bytes = seal_begin.size() + 16 + seal_end.size();
+
+std::string seal(std::uint64_t sum) { return fmt::format("{}{:016x}{}", seal_begin, sum, seal_end); }
+
 } // namespace
+
+std::string sealed(const std::string& lines, std::string_view closing)
+{
+    std::string text = lines;
+    text += closing.substr(0, closing.find_last_of('}'));
+    return text + seal(checksum(text)) + "\n";
+}
 
 std::string Record::word(const char* field) const
 {
@@ -144,9 +167,12 @@ std::vector<Record> read_results(const std::filesystem::path& file, std::vector<
         return {};
     }
     std::size_t line = 0;
+    std::uint64_t sum = checksum_of_nothing;
     bool closed = false;
     for (std::string text; std::getline(in, text);) {
         ++line;
+        const std::uint64_t before_line = sum;
+        sum = checksum("\n", checksum(text, sum));
         auto bad = [&](std::string what) { damage.push_back({name, line, std::move(what)}); };
         if (in.eof()) {
             bad("ends in the middle of the line");
@@ -168,8 +194,14 @@ std::vector<Record> read_results(const std::filesystem::path& file, std::vector<
         Record record{{stem, line}, fields, std::move(text)};
         if (is_closing(record)) {
             closed = true;
-            if (record.number("lines") != static_cast<double>(line - 1))
-                bad("lines are missing before it");
+            const double said = record.number("lines"), found = static_cast<double>(line - 1);
+            const std::string_view whole = record.text, body = whole.substr(0, whole.size() - std::min(whole.size(), seal_bytes));
+            if (said != found)
+                bad(said > found ? "lines are missing before it" : "there are more lines before it than it says");
+            else if (!whole.substr(body.size()).starts_with(seal_begin))
+                bad("has no checksum");
+            else if (whole.substr(body.size()) != seal(checksum(body, before_line)) && damage.size() == before)
+                bad("its checksum is not that of the lines: something was changed");
         }
         records.push_back(std::move(record));
     }

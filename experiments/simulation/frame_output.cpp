@@ -5,10 +5,12 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <sstream>
 
 #include <fmt/format.h>
 
+#include "experiments/report/provenance.hpp"
 #include "toolkit/simulate/stream.hpp"
 #include "toolkit/surface/input_error.hpp"
 #include "toolkit/surface/read_mesh.hpp"
@@ -64,11 +66,19 @@ FrameFormat format_of(const std::string& file) { return file.empty() ? FrameForm
 
 struct Checkpoint {
     struct Header {
-        std::uint64_t identity = 0, bytes = 0, checksum = 0, written = 0; ///< of the scene; of the file of frames; frames in it
+        std::uint64_t identity = 0, bytes = 0, checksum = checksum_of_nothing, written = 0; ///< of the scene; of the file of frames; frames in it
         FrameFormat format = FrameFormat::none;
+        std::uint64_t program_bytes = 0, state_bytes = 0; ///< what follows
     } header;
+    std::string program; ///< that wrote it
     std::string state;
 };
+
+std::string this_program()
+{
+    const Provenance from = provenance(1, 0);
+    return from.version + " (" + from.commit + ")";
+}
 
 // The file's last 8 bytes are a checksum of all before them.
 Checkpoint read_checkpoint(const std::string& file)
@@ -84,7 +94,13 @@ Checkpoint read_checkpoint(const std::string& file)
     if (sum != checksum(std::string_view(bytes).substr(0, bytes.size() - 8)))
         throw InputError::in_file(file, "was changed or is cut off");
     read_raw<Checkpoint::Header>(in, {&checkpoint.header, 1});
-    checkpoint.state = bytes.substr(overhead - 8, bytes.size() - overhead);
+    const Checkpoint::Header& header = checkpoint.header;
+    const std::uint64_t rest = bytes.size() - overhead;
+    if (header.program_bytes > rest || header.state_bytes != rest - header.program_bytes || header.format > FrameFormat::text ||
+        (header.format == FrameFormat::none && (header.bytes != 0 || header.written != 0)))
+        throw InputError::in_file(file, "contradicts itself");
+    checkpoint.program = bytes.substr(overhead - 8, header.program_bytes);
+    checkpoint.state = bytes.substr(overhead - 8 + header.program_bytes, header.state_bytes);
     return checkpoint;
 }
 
@@ -137,6 +153,8 @@ bool FrameOutput::is_mesh_name(const fs::path& file) const
 void FrameOutput::resume(Simulation& simulation)
 {
     const Checkpoint checkpoint = read_checkpoint(options_.resume);
+    if (checkpoint.program != this_program())
+        throw InputError::in_file(options_.resume, fmt::format("was written by cinch {}, this is {}, whose frames may differ; continue with the same program", checkpoint.program, this_program()));
     if (checkpoint.header.identity != identity_)
         throw InputError::in_file(options_.resume, "is of another scene, or of other settings than these");
     if (checkpoint.header.format != format_of(options_.frames))
@@ -147,6 +165,14 @@ void FrameOutput::resume(Simulation& simulation)
     simulation.restore(state);
     if (!state || state.peek() != std::istringstream::traits_type::eof())
         throw InputError::in_file(options_.resume, "does not fit this scene");
+    if (simulation.frame() >= simulation.frame_count())
+        throw InputError::in_file(options_.resume, fmt::format("is at frame {}, and this run ends with frame {}; give it a longer --duration", simulation.frame(), simulation.frame_count() - 1));
+    for (const Simulation::Body& body : simulation.bodies())
+        for (const Field* field : {&body.simulation.positions(), &body.simulation.velocities()})
+            if (!std::all_of(field->begin(), field->end(), [](double x) { return std::isfinite(x); }))
+                throw InputError::in_file(options_.resume, "has numbers for body '" + body.name + "' that are not finite");
+    if (const std::uint64_t frames = simulation.frame() + 1; checkpoint.header.format != FrameFormat::none && checkpoint.header.written != frames)
+        throw InputError::in_file(options_.resume, fmt::format("is at frame {}, but says that {} frames are written", simulation.frame(), checkpoint.header.written));
     bytes_ = checkpoint.header.bytes;
     checksum_ = checkpoint.header.checksum;
     written_ = checkpoint.header.written;
@@ -211,9 +237,12 @@ void FrameOutput::save(const Simulation& simulation)
         return;
     std::ostringstream out;
     out << magic;
-    const Checkpoint::Header header{identity_, bytes_, checksum_, written_, format_of(options_.frames)};
+    std::ostringstream state;
+    simulation.save(state);
+    const std::string program = this_program();
+    const Checkpoint::Header header{identity_, bytes_, checksum_, written_, format_of(options_.frames), program.size(), state.view().size()};
     write_raw<Checkpoint::Header>(out, {&header, 1});
-    simulation.save(out);
+    out << program << state.view();
     const std::uint64_t sum = checksum(out.view());
     write_raw<std::uint64_t>(out, {&sum, 1});
     write_whole(checkpoint_, out.view());

@@ -2,7 +2,6 @@
 #include "experiments/simulation/simulate.hpp"
 
 #include <algorithm>
-#include <map>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -161,7 +160,7 @@ void add_totals(const SimulateOptions& options, const Simulation& simulation, co
     }
     records.add(Json{{"experiment", "simulate"}, {"scene", options.scene}, {"effects", names}, {"bodies", simulation.bodies().size()}, {"nodes", nodes},
                             {"steps", result.steps}, {"ms_per_step", ms_per_step(result.seconds, result)}, {"time_s", simulation.time_s()},
-                            {"failure", result.failure}});
+                            {"load_report", simulation.notes()}, {"failure", result.failure}});
     for (const auto& [name, totals] : effects)
         records.add(Json{{"experiment", "simulate"}, {"scene", options.scene}, {"effect", name}, {"bodies", totals.bodies}, {"calls", totals.calls},
                          {"ms_per_step", ms_per_step(totals.seconds, result)}});
@@ -182,12 +181,8 @@ void print_tables(const SimulateOptions& options, const Simulation& simulation, 
     fmt::print("{}\n", folded(options.scene + ": " + simulation.scene().about));
     fmt::print("{}, {}, {}, {:.1f} neighbours each\n", counted(simulation.bodies().size(), "body", "bodies"), counted(vertices, "vertex", "vertices"),
                counted(nodes, "simulation node", "simulation nodes"), static_cast<double>(neighbours) / static_cast<double>(nodes));
-    std::map<std::string, std::size_t> notes;
-    for (const Simulation::Body& body : simulation.bodies())
-        for (const std::string& note : body.notes)
-            ++notes[note];
-    for (const auto& [note, count] : notes)
-        fmt::print("{}\n", folded(fmt::format("note: {}{}", note, count > 1 ? fmt::format(" (each of {} bodies)", count) : "")));
+    for (const std::string& note : simulation.notes())
+        fmt::print("{}\n", folded("note: " + note));
     fmt::print("\n{} to {:.3f} s, {} Euler, {} ({:.3f} ms each)\n\n", counted(result.frames, "frame", "frames"), simulation.time_s(),
                is_explicit ? "symplectic" : "implicit", counted(result.steps, "step", "steps"), ms_per_step(result.seconds, result));
 

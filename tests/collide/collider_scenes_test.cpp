@@ -158,7 +158,7 @@ TEST_CASE("a brain through a fish, and a folded brain through its coarse form: p
     if (!folder || quick)
         return;
     auto mesh = [&](const char* name) {
-        TriangleMesh m = read_mesh(*folder / name);
+        TriangleMesh m = read_mesh(*folder / name).mesh;
         centre_and_scale(m, 1);
         return m;
     };
@@ -185,8 +185,8 @@ TEST_CASE("a brain through a fish, and a folded brain through its coarse form: p
 
     // At rest on top of each other: 3500 of the vertices are near the others' surface everywhere.
     Bodies folded;
-    folded.surface.push_back(rigid(read_mesh(*folder / "brain_conte69_lh_3500.off")));
-    folded.surface.push_back(rigid(read_mesh(*folder / "brain_conte69_lh_32492.ply")));
+    folded.surface.push_back(rigid(read_mesh(*folder / "brain_conte69_lh_3500.off").mesh));
+    folded.surface.push_back(rigid(read_mesh(*folder / "brain_conte69_lh_32492.ply").mesh));
     folded.add_frame({Maps(1, identity_map), Maps(1, identity_map)});
     folded.add_frame({Maps(1, identity_map), Maps(1, moved_by({0.5, 0, 0}))});
     CHECK(check_all(folded, {some_options()[0]}) > 10000);
@@ -200,7 +200,7 @@ TEST_CASE("a captured kick, given by its vertices, through itself at other times
     Bodies bodies;
     std::vector<Positions> pose;
     for (const char* name : {"kick_000.ply", "kick_020.ply", "kick_040.ply", "kick_060.ply", "kick_080.ply", "kick_100.ply"}) {
-        const TriangleMesh mesh = read_mesh(*folder / "sequence" / name);
+        const TriangleMesh mesh = read_mesh(*folder / "sequence" / name).mesh;
         pose.push_back(mesh.vertices);
         if (bodies.surface.empty())
             bodies.surface.assign(3, rigid(mesh));
@@ -221,7 +221,7 @@ TEST_CASE("meshes with holes, points, segments, self-intersections: through each
         return;
     Bodies bodies;
     for (const char* name : {"nasty_spider.obj", "nasty_wuson.off", "nasty_cycloidal.ply", "nasty_spider.obj"}) {
-        TriangleMesh mesh = read_mesh(*folder / name);
+        TriangleMesh mesh = read_mesh(*folder / name).mesh;
         centre_and_scale(mesh, 1);
         bodies.surface.push_back(soft(std::move(mesh), 20));
     }
@@ -246,7 +246,7 @@ TEST_CASE("characters that dance through each other: pairs of brute force")
     std::vector<Clip> clips;
     std::vector<double> size;
     for (const std::string name : {"CesiumMan", "Fox", "RiggedFigure", "robot"}) {
-        DeformableSurface s{read_mesh(*folder / "skin" / (name + ".rest.off")), {}};
+        DeformableSurface s{read_mesh(*folder / "skin" / (name + ".rest.off")).mesh, {}};
         s.weights = to_dyadic(read_weights_text(*folder / "skin" / (name + ".weights.txt"), s.mesh.vertices.size()));
         clips.push_back(read_clips_text(*folder / "skin" / (name + ".frames.txt"), s.weights.node_count)[0]);
         size.push_back(extent(s.mesh).longest_half);

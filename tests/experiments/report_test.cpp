@@ -36,7 +36,7 @@ std::string whole(const std::string& stage, const std::vector<Json>& records)
     std::string text;
     for (const Json& record : records)
         text += json_line(record, from) + "\n";
-    return text + json_line({{"experiment", "reproduce"}, {"stage", stage}, {"lines", records.size()}, {"status", 0}, {"seconds", 1.0}, {"measured_by", "cinch"}}, from) + "\n";
+    return sealed(text, json_line({{"experiment", "reproduce"}, {"stage", stage}, {"lines", records.size()}, {"status", 0}, {"seconds", 1.0}, {"measured_by", "cinch"}}, from));
 }
 
 Json collide_record(const char* scene, const char* backend, double evaluate, double update, double query)
@@ -110,7 +110,16 @@ TEST_CASE("a damaged file gives no record, and says where the damage is")
          {Fault{"empty", "", 0, "truncated"}, {"cut at a line's end", good.substr(0, line(4)), 3, "truncated"}, {"cut within a line", good.substr(0, line(3) - 20), 2, "middle"},
           {"a line is missing", good.substr(0, line(2)) + good.substr(line(3)), 3, "missing"}, {"a byte is wrong", good.substr(0, line(2)) + "}" + good.substr(line(2) + 1), 2, "JSON"},
           {"not an object", "[1]\n" + good, 1, "object"}, {"without provenance", no_seed, 1, "\"seed\""}, {"a text for a number", std::regex_replace(good, std::regex("\"n\":509"), "\"n\":\"<b>\"", std::regex_constants::format_first_only), 1, "\"n\""},
-          {"something follows", good + good, 5, "follows"}, {"zero bytes", std::string(300, '\0'), 1, "middle"}}) {
+          {"something follows", good + good, 5, "follows"},
+          {"a line twice", good.substr(0, line(3)) + good.substr(line(2)), 5, "more lines before it"},
+          {"a line twice, another gone", good.substr(0, line(2)) + good.substr(line(1), line(2) - line(1)) + good.substr(line(3)), 4, "checksum"},
+          {"another figure", std::regex_replace(good, std::regex("20000.0"), "20001.0"), 4, "checksum"}, {"another status", std::regex_replace(good, std::regex("\"status\":0"), "\"status\":1"), 4, "checksum"},
+          {"a negative time", std::regex_replace(good, std::regex("20000.0"), "-2000.0"), 1, "\"ns_per_bound\" is negative"},
+          {"half a count", std::regex_replace(good, std::regex("\"threads\":1,"), "\"threads\":1.5,"), 1, "no count"},
+          {"a negative count", std::regex_replace(good, std::regex("\"vertices\":30000"), "\"vertices\":-3"), 1, "no count"},
+          {"NaN", std::regex_replace(good, std::regex("20000.0"), "NaN"), 1, "JSON"}, {"NaN as text", std::regex_replace(good, std::regex("20000.0"), "\"nan\""), 1, "\"ns_per_bound\""},
+          {"beyond a double", std::regex_replace(good, std::regex("20000.0"), "1e999"), 1, "JSON"},
+          {"no checksum", std::regex_replace(good, std::regex(",\"checksum\":\"[0-9a-f]*\""), ""), 4, "no checksum"}, {"zero bytes", std::string(300, '\0'), 1, "middle"}}) {
         INFO(fault.what);
         const test::TemporaryFolder folder;
         std::vector<Damage> damage;
@@ -124,6 +133,29 @@ TEST_CASE("a damaged file gives no record, and says where the damage is")
     std::vector<Damage> damage;
     CHECK(read_results(folder.write("scaling.jsonl", good), damage).size() == 4);
     CHECK(damage.empty());
+}
+
+TEST_CASE("a results file of which any byte is changed, left out or added gives no record")
+{
+    const std::string good = whole("scaling", {scaling_records[0]});
+    const test::TemporaryFolder folder;
+    auto records = [&](const std::string& text) {
+        std::vector<Damage> damage;
+        const std::size_t found = read_results(folder.write("x.jsonl", text), damage).size();
+        CHECK((found == 0) == !damage.empty());
+        for (const Damage& d : damage)
+            CHECK(describe(d).find('\n') == std::string::npos);
+        return found;
+    };
+    REQUIRE(records(good) == 2);
+    for (std::size_t i = 0; i < good.size(); ++i) {
+        INFO(i << ": " << good.substr(i, 20));
+        for (const char flip : {1, 4, 32})
+            REQUIRE(records(good.substr(0, i) + static_cast<char>(good[i] ^ flip) + good.substr(i + 1)) == 0);
+        REQUIRE(records(good.substr(0, i)) == 0);
+        REQUIRE(records(good.substr(0, i) + good.substr(i + 1)) == 0);
+        REQUIRE(records(good.substr(0, i) + " " + good.substr(i)) == 0);
+    }
 }
 
 TEST_CASE("cinch report names damaged files, leaves them out, and the rest stands")

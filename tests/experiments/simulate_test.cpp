@@ -10,6 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "experiments/report/provenance.hpp"
 #include "experiments/simulation/find_scene.hpp"
 #include "tests/support.hpp"
 #include "toolkit/simulate/frame_file.hpp"
@@ -115,8 +116,42 @@ TEST_CASE("checkpoints continue only what they are of")
     refused("skin --resume " + frames, "is no checkpoint");
     refused("skin --resume " + state + "x", "no such file");
     std::string bytes = bytes_of(state);
-    bytes[bytes.size() / 2] ^= 4;
-    refused("skin --resume " + folder.write("d", bytes).string(), "was changed");
+    auto with_checksum = [](std::string changed) {
+        changed.resize(changed.size() - 8);
+        const std::uint64_t sum = checksum(changed);
+        return changed.append(reinterpret_cast<const char*>(&sum), 8);
+    };
+    REQUIRE(with_checksum(bytes) == bytes);
+    for (std::size_t i = 0; i < bytes.size(); i += 1 + bytes.size() / 30) {
+        std::string changed = bytes;
+        changed[i] = static_cast<char>(changed[i] ^ 4);
+        refused("skin --resume " + folder.write("d", changed).string(), i < 9 ? "is no checkpoint" : "was changed");
+        refused("skin --resume " + folder.write("d", bytes.substr(0, i)).string(), i == 0 ? "is empty" : i < 73 ? "is no checkpoint" : "was changed");
+    }
+    // Damage that a checksum does not see: fields that contradict each other, a program that is another.
+    const std::string written = bytes_of(frames);
+    for (std::size_t i = 9; i < bytes.size() - 8; i += i < 73 ? 4 : bytes.size() / 20) { // 9 to 64 the header
+        folder.write("f", written);
+        std::string changed = bytes;
+        changed[i] = static_cast<char>(changed[i] ^ 0x40);
+        const auto run = test::cinch("simulate skin --duration 0.3 --resume " + folder.write("d", with_checksum(changed)).string() + " --frames " + frames);
+        INFO(i << " " << run.err);
+        if (i < 65)
+            CHECK(run.status == 2);
+        CHECK((run.status == 0 || run.status == 1 || run.status == 2)); // a crash is none
+        CHECK(std::count(run.err.begin(), run.err.end(), '\n') <= 1);
+    }
+    folder.write("f", written);
+    std::string other = bytes;
+    const std::size_t commit = other.find(provenance(1, 0).version + " (");
+    REQUIRE(commit != std::string::npos);
+    other[commit] = '9';
+    refused("skin --resume " + folder.write("d", with_checksum(other)).string(), "was written by cinch 9");
+    std::string edited = bytes_of(frames);
+    edited[edited.size() / 2] ^= 1;
+    refused("skin --duration 0.3 --resume " + state + " --frames " + folder.write("edited", edited).string(), "is not what " + state + " continues");
+    CHECK(bytes_of(folder.path() / "edited") == edited);
+    refused("skin --duration 0.1 --resume " + state + " --frames " + frames, "is at frame 18, and this run ends with frame 6");
     refused("skin --resume " + state + " --frames " + folder.write("short", "abc").string(), "does not have the");
     refused("skin --resume " + state, "continues with --frames FILE, binary");
     refused("skin --resume " + state + " --frames " + frames + ".jsonl", "continues with --frames FILE, binary");
@@ -252,7 +287,7 @@ TEST_CASE("meshes are those of the frames")
     TemporaryFolder folder;
     for (const std::string format : {"ply", "obj"}) {
         REQUIRE(test::cinch("simulate beam --duration 0.1 --mesh-format " + format + " --meshes " + folder.path().string()).status == 0);
-        const TriangleMesh mesh = read_mesh(folder.path() / ("beam-00006." + format));
+        const TriangleMesh mesh = read_mesh(folder.path() / ("beam-00006." + format)).mesh;
         CHECK(mesh.vertices.size() == 1610);
         double lowest = 0;
         for (const Vec3& v : mesh.vertices)

@@ -27,6 +27,13 @@ void check(const TriangleMesh& mesh)
             require(v < mesh.vertices.size());
 }
 
+void check(const MeshFile& file)
+{
+    check(file.mesh);
+    for (const std::string& note : file.notes)
+        require(!note.empty() && note.find('\n') == std::string::npos);
+}
+
 void check(const Influences& influences, std::size_t vertices)
 {
     require(influences.row.size() == vertices + 1 && influences.row.back() == influences.node.size());

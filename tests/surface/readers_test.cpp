@@ -10,8 +10,10 @@ using namespace std::string_literals;
 
 namespace {
 
-void check_square(const TriangleMesh& mesh)
+void check_square(const MeshFile& file)
 {
+    CHECK(file.notes.empty());
+    const TriangleMesh& mesh = file.mesh;
     REQUIRE(mesh.vertices.size() == 4);
     REQUIRE(mesh.triangles == std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}});
     CHECK(mesh.vertices[2] == Vec3(1, 1, 0.5));
@@ -34,11 +36,11 @@ TEST_CASE("OBJ oddities load")
     SECTION("tabs and a byte order mark") { check_square(parse_obj("\xef\xbb\xbfv\t0 0 0\nv 1 0 0\nv 1 1 0.5\nv 0 1 0\n\tf 1 2 3 4\n", "a")); }
     SECTION("degenerate and duplicate triangles")
     {
-        const TriangleMesh mesh = parse_obj("v 0 0 0\nv 0 0 0\nf 1 1 1\nf 1 2 1\nf 1 2 1\n", "a");
+        const TriangleMesh mesh = parse_obj("v 0 0 0\nv 0 0 0\nf 1 1 1\nf 1 2 1\nf 1 2 1\n", "a").mesh;
         CHECK(mesh.vertices.size() == 2);
         CHECK(mesh.triangles.size() == 3);
     }
-    SECTION("numbers too small for a double become zero") { CHECK(parse_obj("v 1e-400 -1e-999 0\n", "a").vertices[0] == Vec3(0, 0, 0)); }
+    SECTION("numbers too small for a double become zero") { CHECK(parse_obj("v 1e-400 -1e-999 0\n", "a").mesh.vertices[0] == Vec3(0, 0, 0)); }
 }
 
 TEST_CASE("OFF oddities load")
@@ -48,7 +50,7 @@ TEST_CASE("OFF oddities load")
     check_square(parse_off("OFF 4 1 0\r\n# c\n" + points + "\n4 0 1 2 3 255 0 0", "a"));
     check_square(parse_off("4 1 4\n" + points + "4 0 1 2 3", "a"));
     check_square(parse_off("COFF\n4\n1 0\n0 0 0 1 1 1 1\n1 0 0 1 1 1 1\n1 1 0.5 1 1 1 1\n0 1 0 1 1 1 1\n4 0 1 2 3\n", "a"));
-    CHECK(parse_off("OFF\n0 0 0\n", "a").vertices.empty());
+    CHECK(parse_off("OFF\n0 0 0\n", "a").mesh.vertices.empty());
 }
 
 TEST_CASE("PLY oddities load")
@@ -58,8 +60,11 @@ TEST_CASE("PLY oddities load")
                            "property uchar red\nelement face 1\nproperty int material\nproperty list uint8 uint32 vertex_index\n" + body, "a"));
     SECTION("faces before vertices, unknown elements and lists")
     {
-        check_square(parse_ply("ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\nelement extra 2\nproperty list uchar float q\n"
-                               "element vertex 4\nproperty float z\nproperty float y\nproperty float x\nend_header\n4 0 1 2 3\n2 1 1\n0\n0 0 0\n0 0 1\n0.5 1 1\n0 1 0", "a"));
+        MeshFile file = parse_ply("ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\nelement extra 2\nproperty list uchar float q\n"
+                               "element vertex 4\nproperty float z\nproperty float y\nproperty float x\nend_header\n4 0 1 2 3\n2 1 1\n0\n0 0 0\n0 0 1\n0.5 1 1\n0 1 0", "a");
+        CHECK(file.notes == std::vector<std::string>{"not read, as no surface: 'extra'"});
+        file.notes.clear();
+        check_square(file);
     }
     SECTION("both binaries")
     {
@@ -72,20 +77,20 @@ TEST_CASE("PLY oddities load")
     SECTION("CR LF before a binary body, and a body that begins with a line feed byte")
     {
         const std::string header = "ply\r\nformat binary_little_endian 1.0\r\nelement vertex 1\r\nproperty uchar x\r\nproperty uchar y\r\nproperty uchar z\r\nend_header\r\n";
-        CHECK(parse_ply(header + "\n\r\1", "a").vertices[0] == Vec3(10, 13, 1));
+        CHECK(parse_ply(header + "\n\r\1", "a").mesh.vertices[0] == Vec3(10, 13, 1));
     }
 }
 
 TEST_CASE("STL loads, three vertices per triangle")
 {
     const std::string one = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
-    CHECK(parse_stl("solid\n" + one + "endsolid\n", "a").triangles.size() == 1);
-    CHECK(parse_stl("solid my part v2\n" + one + one + "endsolid my part v2\nsolid b\n" + one + "endsolid b", "a").vertices.size() == 9);
+    CHECK(parse_stl("solid\n" + one + "endsolid\n", "a").mesh.triangles.size() == 1);
+    CHECK(parse_stl("solid my part v2\n" + one + one + "endsolid my part v2\nsolid b\n" + one + "endsolid b", "a").mesh.vertices.size() == 9);
     // Binary with a header that begins with "solid", as some programs write.
     std::string binary = "solid" + std::string(75, ' ') + "\1\0\0\0"s + std::string(12, '\0');
     for (const char* corner : {"\0\0\0\0", "\0\0\x80\x3f", "\0\0\0\x40"})
         binary += std::string(corner, 4) + std::string(8, '\0');
-    const TriangleMesh mesh = parse_stl(binary + "\0\0"s, "a");
+    const TriangleMesh mesh = parse_stl(binary + "\0\0"s, "a").mesh;
     REQUIRE(mesh.vertices.size() == 3);
     CHECK(mesh.vertices[2] == Vec3(2, 0, 0));
 }
@@ -93,6 +98,6 @@ TEST_CASE("STL loads, three vertices per triangle")
 TEST_CASE("the format follows the extension in any case")
 {
     const test::TemporaryFolder folder;
-    CHECK(read_mesh(folder.write("A.ObJ", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")).triangles.size() == 1);
-    CHECK(read_mesh(folder.write("B.OFF", "OFF\n1 0 0\n1 2 3\n")).vertices[0] == Vec3(1, 2, 3));
+    CHECK(read_mesh(folder.write("A.ObJ", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")).mesh.triangles.size() == 1);
+    CHECK(read_mesh(folder.write("B.OFF", "OFF\n1 0 0\n1 2 3\n")).mesh.vertices[0] == Vec3(1, 2, 3));
 }

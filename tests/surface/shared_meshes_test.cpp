@@ -22,7 +22,7 @@ TEST_CASE("every reference mesh loads with the counts of its manifest")
         const std::string name = entry["file"];
         INFO(name);
         const auto path = *folder / name;
-        const TriangleMesh mesh = path.extension() == ".glb" ? read_gltf(path).mesh : read_mesh(path);
+        const TriangleMesh mesh = path.extension() == ".glb" ? read_gltf(path).mesh : read_mesh(path).mesh;
         CHECK(mesh.vertices.size() == entry["vertices"]);
         CHECK(mesh.triangles.size() == entry["triangles"]);
         ++checked;

@@ -2,6 +2,7 @@
 #include "toolkit/simulate/frame_file.hpp"
 
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <numeric>
 
@@ -75,6 +76,8 @@ FrameFile read_frames(const std::filesystem::path& path)
     FrameFile frames;
     const auto bodies = get<std::uint32_t>(bytes, place);
     frames.layout.frame_s = get<double>(bytes, place);
+    if (!(frames.layout.frame_s > 0) || !std::isfinite(frames.layout.frame_s))
+        throw InputError::in_file(file, "declares " + std::to_string(frames.layout.frame_s) + " seconds from frame to frame");
     if (bytes.size() - place < std::size_t(4) * bodies)
         throw InputError::in_file(file, "ends within its header");
     for (std::uint32_t b = 0; b < bodies; ++b)

@@ -8,7 +8,6 @@
 
 #include "toolkit/deform/sample_nodes.hpp"
 #include "toolkit/surface/character.hpp"
-#include "toolkit/surface/read_mesh.hpp"
 #include "toolkit/surface/shapes.hpp"
 
 namespace cinch {
@@ -63,30 +62,30 @@ bool is_character(const std::string& name) { return name.ends_with(".glb") || na
     throw InputError::in_file(file, body.path + "/" + field + ": " + what);
 }
 
-TriangleMesh load_mesh(const SceneBody& body, const std::string& file, MeshCache& meshes)
+MeshFile load_mesh(const SceneBody& body, const std::string& file, MeshCache& meshes)
 {
     if (body.surface == "box" || body.surface == "sheet")
-        return box(body.surface == "box" ? body.box_m : Vec3(body.box_m[0], body.box_m[1], 0), body.cells);
+        return {box(body.surface == "box" ? body.box_m : Vec3(body.box_m[0], body.box_m[1], 0), body.cells), {}};
     if (const auto known = meshes.find(body.surface); known != meshes.end())
         return known->second;
     if (auto shape = named_shape(body.surface))
-        return meshes[body.surface] = std::move(*shape);
+        return meshes[body.surface] = {std::move(*shape), {}};
     if (!is_mesh_file(body.surface)) {
         std::string known;
         for (const std::string& name : shape_names())
             known += name + ", ";
         complain(file, body, "surface", "'" + body.surface + "' is no shape (" + known + "box, sheet) and no mesh or character file");
     }
-    TriangleMesh mesh = [&] {
+    MeshFile read = [&] {
         try {
             return read_mesh(body.surface);
         } catch (const InputError& error) {
             complain(file, body, "surface", error.what());
         }
     }();
-    if (mesh.vertices.empty() || mesh.triangles.empty())
+    if (read.mesh.vertices.empty() || read.mesh.triangles.empty())
         complain(file, body, "surface", body.surface + " has no triangles");
-    return meshes[body.surface] = std::move(mesh);
+    return meshes[body.surface] = std::move(read);
 }
 
 std::vector<Vec3> lattice(const SceneBody& body)
@@ -120,7 +119,10 @@ LoadedBody load_body(const SceneBody& body, const std::string& file, MeshCache& 
         if (mesh.triangles.empty())
             complain(file, body, "surface", body.surface + " has no skinned triangles");
     } else {
-        mesh = load_mesh(body, file, meshes);
+        MeshFile read = load_mesh(body, file, meshes);
+        mesh = std::move(read.mesh);
+        for (const std::string& note : read.notes)
+            loaded.notes.push_back(std::filesystem::path(body.surface).filename().string() + ": " + note);
         if (body.size_m > 0)
             centre_and_scale(mesh, body.size_m);
     }

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "toolkit/simulate/scene.hpp"
+#include "toolkit/surface/read_mesh.hpp"
 
 namespace cinch {
 
@@ -20,7 +21,7 @@ struct LoadedBody {
 };
 
 /// Meshes that several bodies of a scene share, by the name of their surface.
-using MeshCache = std::map<std::string, TriangleMesh>;
+using MeshCache = std::map<std::string, MeshFile>;
 
 /// Throws InputError with file and path.
 LoadedBody load_body(const SceneBody& body, const std::string& file, MeshCache& meshes);

@@ -224,6 +224,23 @@ Simulation::Simulation(Scene scene, const std::string& file) : scene_(std::move(
 
 std::size_t Simulation::frame_count() const { return static_cast<std::size_t>(std::floor(scene_.duration_s / scene_.frame_s + 1e-9)) + 1; }
 
+std::vector<std::string> Simulation::notes() const
+{
+    std::vector<std::pair<std::string, std::size_t>> counted;
+    for (const Body& body : bodies_)
+        for (const std::string& note : body.notes) {
+            const auto known = std::find_if(counted.begin(), counted.end(), [&](const auto& c) { return c.first == note; });
+            if (known == counted.end())
+                counted.emplace_back(note, 1);
+            else
+                ++known->second;
+        }
+    std::vector<std::string> lines;
+    for (const auto& [note, count] : counted)
+        lines.push_back(note + (count > 1 ? " (each of " + std::to_string(count) + " bodies)" : ""));
+    return lines;
+}
+
 std::vector<StepReport> Simulation::advance()
 {
     require_default_arithmetic();

@@ -29,6 +29,7 @@ public:
     const std::vector<Body>& bodies() const { return bodies_; }
     std::size_t frame() const { return frame_; } ///< 0 at the start
     std::size_t frame_count() const;             ///< the first one at time 0 included
+    std::vector<std::string> notes() const; ///< of all bodies, in the order of the first that has each; with how many, if several have it
     double time_s() const { return static_cast<double>(frame_) * scene_.frame_s; }
     std::span<const std::unique_ptr<ContactSearch>> contacts() const { return contacts_; }
 

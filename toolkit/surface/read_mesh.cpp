@@ -35,7 +35,18 @@ static std::string lower_extension(const std::filesystem::path& path)
     return extension;
 }
 
-using Parser = TriangleMesh (*)(std::string_view, const std::string&);
+// By the bytes that such files begin with; none of them can begin a mesh.
+static const char* compression_of(std::string_view bytes)
+{
+    using namespace std::string_view_literals;
+    for (const auto& [first, name] : {std::pair("\x1f\x8b"sv, "gzip"), std::pair("PK\x03\x04"sv, "zip"), std::pair("BZh"sv, "bzip2"),
+                                      std::pair("\xfd\x37zXZ"sv, "xz"), std::pair("\x28\xb5\x2f\xfd"sv, "zstd")})
+        if (bytes.starts_with(first))
+            return name;
+    return nullptr;
+}
+
+using Parser = MeshFile (*)(std::string_view, const std::string&);
 
 static Parser parser_for(const std::filesystem::path& path)
 {
@@ -49,7 +60,7 @@ static Parser parser_for(const std::filesystem::path& path)
 
 bool is_mesh_file(const std::filesystem::path& path) { return parser_for(path) != nullptr; }
 
-TriangleMesh read_mesh(const std::filesystem::path& path)
+MeshFile read_mesh(const std::filesystem::path& path)
 {
     const Parser parse = parser_for(path);
     if (!parse)
@@ -58,6 +69,8 @@ TriangleMesh read_mesh(const std::filesystem::path& path)
     const std::string bytes = read_bytes(path);
     if (bytes.size() > std::numeric_limits<std::uint32_t>::max())
         throw InputError::in_file(path.string(), "is larger than 4 GiB; vertex indices have 32 bits");
+    if (const char* compression = compression_of(bytes))
+        throw InputError::in_file(path.string(), std::string("is compressed (") + compression + "); unpack it first");
     return parse(bytes, path.string());
 }
 

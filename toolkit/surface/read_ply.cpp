@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // PLY: ascii, binary little endian, binary big endian. Elements and properties in any order; only x, y, z of `vertex`
-// and vertex_indices (or vertex_index) of `face` are used, the others are passed over.
+// and vertex_indices (or vertex_index) of `face` and `tristrips` are used, the others are passed over.
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
 #include <optional>
 
+#include "toolkit/surface/left_out.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 #include "toolkit/surface/text_scan.hpp"
 
@@ -61,7 +62,7 @@ Scalar scalar_type(TextScan& scan)
 
 Header read_header(std::string_view bytes, const std::string& file)
 {
-    TextScan scan(bytes, file, 0);
+    TextScan scan(bytes, file);
     if (!scan.next_line() || scan.word() != "ply")
         throw InputError::at_line(file, 1, "the first line of a PLY file must be 'ply'");
     Header header;
@@ -119,10 +120,15 @@ Header read_header(std::string_view bytes, const std::string& file)
         scan.fail("the header has no format line");
     header.body = scan.byte();
     header.body_line = scan.line();
-    // The body starts right after the line end: CR LF and LF are told apart, a lone CR would swallow a data byte 10.
+    const std::size_t line_end = bytes.find_first_not_of(" \t", header.body);
+    if (line_end != std::string_view::npos && (bytes[line_end] == '\r' || bytes[line_end] == '\n'))
+        header.body = line_end;
+    // The body starts right after the line end, which is like that of the first line: after a lone CR, a byte 10 is data.
+    const std::size_t first_end = bytes.find_first_of("\r\n");
+    const bool lone_cr = bytes[first_end] == '\r' && bytes[first_end + 1] != '\n'; // there are more lines
     if (header.body < bytes.size() && bytes[header.body] == '\r')
         ++header.body;
-    if (header.body < bytes.size() && bytes[header.body] == '\n')
+    if (!lone_cr && header.body < bytes.size() && bytes[header.body] == '\n')
         ++header.body;
     return header;
 }
@@ -131,11 +137,13 @@ Header read_header(std::string_view bytes, const std::string& file)
 class Body {
 public:
     Body(std::string_view bytes, const std::string& file, const Header& header)
-        : format_(header.format), bytes_(bytes), file_(file), at_(header.body), text_(bytes.substr(header.body), file, 0),
+        : format_(header.format), bytes_(bytes), file_(file), at_(header.body), text_(bytes.substr(header.body), file),
           first_line_(header.body_line)
     {
     }
 
+    /// Whether anything but blanks is left; nothing may be read after that.
+    bool has_more() { return format_ == Format::ascii ? !text_.word().empty() || text_.next_line() : at_ < bytes_.size(); }
     std::size_t bytes_left() const { return format_ == Format::ascii ? text_.bytes_left() : bytes_.size() - at_; }
 
     /// One scalar as a double; exact for every PLY type.
@@ -232,82 +240,164 @@ void read_vertex(Body& body, const Element& element, const int (&axis_property)[
     mesh.vertices.push_back(v);
 }
 
+// What a list of vertex indices means.
+enum class Meaning {
+    polygon,
+    strips, ///< triangle strips one after the other, each ended by -1 or the end of the list
+    none,   ///< no index of a vertex
+    unknown ///< an element that names vertices and is neither `face` nor `tristrips`
+};
+
 struct Polygons {
     std::vector<Triangle> triangles;
+    std::size_t small_faces = 0, small_strips = 0, small_others = 0; ///< of fewer than three vertices
     std::vector<std::uint32_t> polygon; // scratch
 };
 
-void read_face(Body& body, const Element& element, std::size_t index_property, std::uint64_t vertices, Polygons& out)
+void add_fan(Polygons& out)
+{
+    out.small_faces += out.polygon.size() < 3;
+    for (std::size_t i = 2; i < out.polygon.size(); ++i)
+        out.triangles.push_back({out.polygon[0], out.polygon[i - 1], out.polygon[i]});
+}
+
+// Every second triangle of a strip turns the other way, so two corners are swapped. Degenerate ones, by which strips are stitched together,
+// are kept as all degenerate triangles are.
+void end_strip(Polygons& out)
+{
+    out.small_strips += out.polygon.size() == 1 || out.polygon.size() == 2; // between two ends there is no strip
+    for (std::size_t i = 2; i < out.polygon.size(); ++i) {
+        const std::uint32_t a = out.polygon[i - 2], b = out.polygon[i - 1], c = out.polygon[i];
+        out.triangles.push_back(i % 2 == 0 ? Triangle{a, b, c} : Triangle{b, a, c});
+    }
+    out.polygon.clear();
+}
+
+// -1, or what it becomes in a type without a sign, if no vertex has that index.
+bool ends_strip(double index, Scalar type, std::uint64_t vertices)
+{
+    const double unsigned_end = type == Scalar::u8 ? 0xff : type == Scalar::u16 ? 0xffff : type == Scalar::u32 ? 0xffffffff : -1;
+    return index == -1 || (index == unsigned_end && index >= static_cast<double>(vertices));
+}
+
+void read_face(Body& body, const Element& element, std::size_t index_property, Meaning meaning, std::uint64_t vertices, Polygons& out)
 {
     for (std::size_t p = 0; p < element.properties.size(); ++p) {
         const Property& property = element.properties[p];
         if (!property.list_size_type) {
-            body.number(property.type, "a face property");
+            body.number(property.type, "a property");
             continue;
         }
         const std::uint64_t size = list_size(body, property);
-        if (p == index_property && size < 3)
-            body.fail("a face with " + std::to_string(size) + " vertices; at least 3 are needed");
         out.polygon.clear();
         for (std::uint64_t i = 0; i < size; ++i) {
-            const double index = body.number(property.type, "a vertex index");
-            if (p != index_property)
+            if (p != index_property) {
+                body.number(property.type, "a list item");
                 continue;
+            }
+            const double index = body.number(property.type, "a vertex index");
+            if (meaning == Meaning::strips && ends_strip(index, property.type, vertices)) {
+                end_strip(out);
+                continue;
+            }
             if (!(index >= 0 && index < static_cast<double>(vertices)))
                 body.fail("vertex index " + std::to_string(static_cast<std::int64_t>(index)) + " is out of range; the file declares " +
                           std::to_string(vertices) + " vertices");
             out.polygon.push_back(static_cast<std::uint32_t>(index));
         }
-        for (std::size_t i = 2; i < out.polygon.size(); ++i)
-            out.triangles.push_back({out.polygon[0], out.polygon[i - 1], out.polygon[i]});
+        if (p != index_property)
+            continue;
+        if (meaning == Meaning::unknown && size >= 3)
+            body.fail("element '" + printable(element.name) + "' has a list of " + std::to_string(size) +
+                      " vertices; surfaces are read from 'face' and 'tristrips' alone");
+        if (meaning == Meaning::unknown)
+            ++out.small_others;
+        else if (meaning == Meaning::polygon)
+            add_fan(out);
+        else
+            end_strip(out);
     }
+}
+
+// Lists of an element of such a name are lines, whatever their length.
+bool is_line(std::string_view element)
+{
+    return element.starts_with("edge") || element.starts_with("line") || element.starts_with("polyline") || element.starts_with("curve");
+}
+
+// The list of vertex indices, or the number of properties if there is none.
+std::size_t index_list(const Element& element)
+{
+    std::size_t found = element.properties.size();
+    for (std::size_t p = 0; p < element.properties.size(); ++p) {
+        const Property& property = element.properties[p];
+        if (property.list_size_type && property.type < Scalar::f32 && (property.name == "vertex_indices" || property.name == "vertex_index"))
+            found = p;
+    }
+    return found;
 }
 
 } // namespace
 
-TriangleMesh parse_ply(std::string_view bytes, const std::string& file)
+MeshFile parse_ply(std::string_view bytes, const std::string& file)
 {
     const Header header = read_header(bytes, file);
-    const auto vertex_element = std::find_if(header.elements.begin(), header.elements.end(), [](const Element& e) { return e.name == "vertex"; });
+    const auto is_vertices = [](const Element& e) { return e.name == "vertex"; };
+    const auto vertex_element = std::find_if(header.elements.begin(), header.elements.end(), is_vertices);
     if (vertex_element == header.elements.end())
         throw InputError::in_file(file, "the header declares no element 'vertex'");
+    if (std::count_if(header.elements.begin(), header.elements.end(), is_vertices) > 1)
+        throw InputError::in_file(file, "the header declares the element 'vertex' twice");
 
     Body body(bytes, file, header);
-    TriangleMesh mesh;
+    MeshFile out;
     Polygons faces;
+    std::string not_read;
     for (const Element& element : header.elements) {
         const std::size_t least = smallest_item(element, header.format);
-        if (least == 0 && &element != &*vertex_element)
+        const bool is_vertex = &element == &*vertex_element, is_face = element.name == "face", is_strips = element.name == "tristrips";
+        const std::size_t indices = index_list(element);
+        const bool has_indices = indices < element.properties.size();
+        if ((is_face || is_strips) && !has_indices)
+            throw InputError::in_file(file, "element '" + element.name + "' has no integer list 'vertex_indices'");
+        if (!is_vertex && !is_face && !is_strips && element.count > 0 && (!has_indices || is_line(element.name)))
+            not_read += (not_read.empty() ? "'" : ", '") + printable(element.name) + "'";
+        if (least == 0 && !is_vertex)
             continue; // nothing of it is in the file
         if (least > 0 && element.count > 0 && element.count - 1 > body.bytes_left() / least)
             throw InputError::in_file(file, "element '" + printable(element.name) + "' declares " + std::to_string(element.count) +
                                                 " items, but only " + std::to_string(body.bytes_left()) + " bytes follow");
-        int axes[3] = {-1, -1, -1};
-        std::size_t indices = element.properties.size();
-        for (std::size_t p = 0; p < element.properties.size(); ++p) {
-            const Property& property = element.properties[p];
-            for (int axis = 0; axis < 3; ++axis)
-                if (!property.list_size_type && property.name == std::string(1, static_cast<char>('x' + axis)))
-                    axes[axis] = static_cast<int>(p);
-            if (property.list_size_type && property.type < Scalar::f32 && (property.name == "vertex_indices" || property.name == "vertex_index"))
-                indices = p;
+        if (is_vertex) {
+            int axes[3] = {-1, -1, -1};
+            for (std::size_t p = 0; p < element.properties.size(); ++p)
+                for (int axis = 0; axis < 3; ++axis)
+                    if (!element.properties[p].list_size_type && element.properties[p].name == std::string(1, static_cast<char>('x' + axis)))
+                        axes[axis] = static_cast<int>(p);
+            if (axes[0] < 0 || axes[1] < 0 || axes[2] < 0)
+                throw InputError::in_file(file, "element 'vertex' lacks one of the properties x, y and z");
+            out.mesh.vertices.reserve(std::min<std::uint64_t>(element.count, body.bytes_left() / least + 1));
+            for (std::uint64_t i = 0; i < element.count; ++i)
+                read_vertex(body, element, axes, out.mesh);
+            continue;
         }
-        const bool is_vertex = &element == &*vertex_element, is_face = element.name == "face";
-        if (is_vertex && (axes[0] < 0 || axes[1] < 0 || axes[2] < 0))
-            throw InputError::in_file(file, "element 'vertex' lacks one of the properties x, y and z");
-        if (is_face && indices == element.properties.size())
-            throw InputError::in_file(file, "element 'face' has no integer list 'vertex_indices'");
-        if (is_vertex)
-            mesh.vertices.reserve(std::min<std::uint64_t>(element.count, body.bytes_left() / least + 1));
-        for (std::uint64_t i = 0; i < element.count; ++i) {
-            if (is_vertex)
-                read_vertex(body, element, axes, mesh);
-            else
-                read_face(body, element, is_face ? indices : element.properties.size(), vertex_element->count, faces);
-        }
+        const Meaning meaning = is_face                                    ? Meaning::polygon
+                                : is_strips                                ? Meaning::strips
+                                : has_indices && !is_line(element.name)    ? Meaning::unknown
+                                                                           : Meaning::none;
+        for (std::uint64_t i = 0; i < element.count; ++i)
+            read_face(body, element, meaning == Meaning::none ? element.properties.size() : indices, meaning, vertex_element->count, faces);
     }
-    mesh.triangles = std::move(faces.triangles);
-    return mesh;
+    out.mesh.triangles = std::move(faces.triangles);
+    note_left_out({{faces.small_faces, "face of fewer than three vertices", "faces of fewer than three vertices"},
+                   {faces.small_strips, "strip of fewer than three vertices", "strips of fewer than three vertices"},
+                   {faces.small_others, "element of fewer than three vertices", "elements of fewer than three vertices"}},
+                  out.notes);
+    if (!not_read.empty())
+        out.notes.push_back("not read, as no surface: " + not_read);
+    const std::size_t left = body.bytes_left();
+    if (body.has_more())
+        out.notes.push_back(std::to_string(left) + (left == 1 ? " byte follows" : " bytes follow") + " the last element that the header declares; not read");
+    return out;
 }
 
 } // namespace cinch

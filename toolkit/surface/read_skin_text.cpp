@@ -27,7 +27,7 @@ void expect_count(TextScan& scan, std::size_t found, std::size_t wanted, const s
 
 Influences parse_weights_text(std::string_view bytes, const std::string& file, std::size_t vertices)
 {
-    TextScan scan(bytes, file, '#');
+    TextScan scan(bytes, file, {.comment = '#'});
     expect_count(scan, count_between(scan, "the number of vertices", 0), vertices, "vertices", "mesh has");
     Influences out;
     out.node_count = static_cast<std::uint32_t>(count_between(scan, "the number of nodes", 1));
@@ -61,7 +61,7 @@ Influences parse_weights_text(std::string_view bytes, const std::string& file, s
 
 std::vector<Clip> parse_clips_text(std::string_view bytes, const std::string& file, std::uint32_t nodes)
 {
-    TextScan scan(bytes, file, '#');
+    TextScan scan(bytes, file, {.comment = '#'});
     const std::size_t clips = count_between(scan, "the number of clips", 1);
     std::vector<Clip> out;
     for (std::size_t c = 0; c < clips; ++c) {

@@ -20,10 +20,11 @@ std::uint32_t little_u32(std::string_view bytes, std::size_t at)
     return value;
 }
 
-TriangleMesh parse_binary(std::string_view bytes, const std::string& file)
+MeshFile parse_binary(std::string_view bytes, const std::string& file)
 {
     const std::uint32_t triangles = little_u32(bytes, 80);
-    TriangleMesh mesh;
+    MeshFile out;
+    TriangleMesh& mesh = out.mesh;
     mesh.vertices.reserve(3 * static_cast<std::size_t>(triangles));
     mesh.triangles.reserve(triangles);
     for (std::uint32_t t = 0; t < triangles; ++t) {
@@ -41,30 +42,31 @@ TriangleMesh parse_binary(std::string_view bytes, const std::string& file)
         }
         mesh.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
     }
-    return mesh;
+    return out;
 }
 
 void expect(TextScan& scan, std::string_view wanted)
 {
     const std::string_view word = scan.word_across_lines("'" + std::string(wanted) + "'");
-    if (word != wanted)
+    if (!is_keyword(word, wanted))
         scan.fail("expected '" + std::string(wanted) + "', found '" + printable(word) + "'");
 }
 
-TriangleMesh parse_ascii(std::string_view bytes, const std::string& file)
+MeshFile parse_ascii(std::string_view bytes, const std::string& file)
 {
-    TextScan scan(bytes, file, 0);
-    TriangleMesh mesh;
+    TextScan scan(bytes, file);
+    MeshFile out;
+    TriangleMesh& mesh = out.mesh;
     bool any_solid = false;
     while (scan.next_line()) { // several solids may follow each other
         std::string_view word = scan.word();
-        if (word != "solid")
+        if (!is_keyword(word, "solid"))
             scan.fail("expected 'solid', found '" + printable(word) + "'");
         any_solid = true;
         if (!scan.next_line()) // the name, if any, ends with its line
             scan.fail("the file ends where 'facet' or 'endsolid' was expected");
-        while ((word = scan.word_across_lines("'facet' or 'endsolid'")) != "endsolid") {
-            if (word != "facet")
+        while (!is_keyword(word = scan.word_across_lines("'facet' or 'endsolid'"), "endsolid")) {
+            if (!is_keyword(word, "facet"))
                 scan.fail("expected 'facet' or 'endsolid', found '" + printable(word) + "'");
             expect(scan, "normal");
             for (int i = 0; i < 3; ++i)
@@ -80,7 +82,7 @@ TriangleMesh parse_ascii(std::string_view bytes, const std::string& file)
                 mesh.vertices.push_back(v);
             }
             word = scan.word_across_lines("'endloop'");
-            if (word != "endloop")
+            if (!is_keyword(word, "endloop"))
                 scan.fail("expected 'endloop' after 3 vertices, found '" + printable(word) + "'");
             expect(scan, "endfacet");
             mesh.triangles.push_back({first, first + 1, first + 2});
@@ -88,27 +90,33 @@ TriangleMesh parse_ascii(std::string_view bytes, const std::string& file)
     }
     if (!any_solid)
         throw InputError::in_file(file, "has no 'solid' and is too short for binary STL");
-    return mesh;
+    return out;
 }
 
 } // namespace
 
-TriangleMesh parse_stl(std::string_view bytes, const std::string& file)
+MeshFile parse_stl(std::string_view bytes, const std::string& file)
 {
-    // Binary files may begin with "solid" too, so the exact size decides first.
+    // Binary files may begin with "solid" too, so the count decides. Below 4 GiB it is below 2^27, so the byte of its highest bits is below
+    // 8, and no such byte is in a text.
     const bool has_header = bytes.size() >= header_bytes;
-    const std::uint64_t declared = has_header ? little_u32(bytes, 80) : 0;
-    const std::uint64_t wanted = header_bytes + triangle_bytes * declared;
-    if (has_header && bytes.size() == wanted)
-        return parse_binary(bytes, file);
-    const std::size_t first_word = bytes.find_first_not_of(" \t\r\n");
-    if (first_word != std::string_view::npos && bytes.substr(first_word, 5) == "solid")
+    const bool is_binary = has_header && static_cast<unsigned char>(bytes[83]) < 8;
+    std::size_t first_word = bytes.starts_with("\xef\xbb\xbf") ? 3 : 0; // a UTF-8 byte order mark
+    first_word = bytes.find_first_not_of(" \t\r\n\f\v", first_word);
+    if (!is_binary && first_word != std::string_view::npos && is_keyword(bytes.substr(first_word, 5), "solid"))
         return parse_ascii(bytes, file);
     if (!has_header)
         throw InputError::at_byte(file, bytes.size(), "the file ends inside the 84-byte header of binary STL");
-    throw InputError::at_byte(file, 80,
-                              "binary STL declares " + std::to_string(declared) + " triangles, which take " +
-                                  std::to_string(wanted) + " bytes; the file has " + std::to_string(bytes.size()));
+    const std::uint64_t declared = little_u32(bytes, 80), wanted = header_bytes + triangle_bytes * declared;
+    if (bytes.size() < wanted)
+        throw InputError::at_byte(file, 80,
+                                  "binary STL declares " + std::to_string(declared) + " triangles, which take " +
+                                      std::to_string(wanted) + " bytes; the file has " + std::to_string(bytes.size()));
+    if (const std::uint64_t trailing = bytes.size() - wanted)
+        throw InputError::at_byte(file, wanted,
+                                  std::to_string(trailing) + " trailing " + (trailing == 1 ? "byte" : "bytes") + " after the " + std::to_string(declared) +
+                                      (declared == 1 ? " triangle" : " triangles") + " that binary STL declares; correct the count at byte 80, or cut them off");
+    return parse_binary(bytes, file);
 }
 
 } // namespace cinch

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "toolkit/surface/text_scan.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <utility>
 
 namespace cinch {
 
-TextScan::TextScan(std::string_view bytes, std::string file, char comment, bool joined_lines)
-    : bytes_(bytes), file_(std::move(file)), comment_(comment), joined_lines_(joined_lines)
+TextScan::TextScan(std::string_view bytes, std::string file, TextSyntax syntax) : bytes_(bytes), file_(std::move(file)), syntax_(syntax)
 {
     if (bytes_.starts_with("\xef\xbb\xbf"))
         at_ = 3; // a UTF-8 byte order mark
@@ -35,7 +35,7 @@ void TextScan::skip_blanks()
     for (;;) {
         while (at_ < bytes_.size() && is_blank(bytes_[at_]))
             ++at_;
-        if (joined_lines_ && at_ < bytes_.size() && bytes_[at_] == '\\') {
+        if (syntax_.joined_lines && at_ < bytes_.size() && bytes_[at_] == '\\') {
             if (const std::size_t end = line_end(bytes_, at_ + 1)) {
                 at_ += 1 + end;
                 ++line_;
@@ -51,7 +51,7 @@ bool TextScan::next_line()
     for (;;) {
         if (started_) {
             while (at_ < bytes_.size() && !line_end(bytes_, at_)) { // the rest of this line, comment included
-                if (joined_lines_ && bytes_[at_] == '\\' && line_end(bytes_, at_ + 1)) {
+                if (syntax_.joined_lines && bytes_[at_] == '\\' && line_end(bytes_, at_ + 1)) {
                     at_ += 1 + line_end(bytes_, at_ + 1);
                     ++line_;
                     continue;
@@ -68,7 +68,7 @@ bool TextScan::next_line()
         skip_blanks();
         if (at_ >= bytes_.size())
             return false;
-        if (!line_end(bytes_, at_) && !(comment_ && bytes_[at_] == comment_))
+        if (!line_end(bytes_, at_) && !starts_comment(at_))
             return true;
     }
 }
@@ -78,13 +78,13 @@ std::string_view TextScan::word()
     if (at_line_end_)
         return {};
     skip_blanks();
-    if (at_ >= bytes_.size() || line_end(bytes_, at_) || (comment_ && bytes_[at_] == comment_)) {
+    if (at_ >= bytes_.size() || line_end(bytes_, at_) || starts_comment(at_)) {
         at_line_end_ = true;
         return {};
     }
     const std::size_t begin = at_;
-    while (at_ < bytes_.size() && !is_blank(bytes_[at_]) && !line_end(bytes_, at_) &&
-           !(joined_lines_ && bytes_[at_] == '\\' && line_end(bytes_, at_ + 1)))
+    while (at_ < bytes_.size() && !is_blank(bytes_[at_]) && !line_end(bytes_, at_) && !(syntax_.comments_end_words && starts_comment(at_)) &&
+           !(syntax_.joined_lines && bytes_[at_] == '\\' && line_end(bytes_, at_ + 1)))
         ++at_;
     return bytes_.substr(begin, at_ - begin);
 }
@@ -107,6 +107,12 @@ std::string printable(std::string_view word)
     for (char c : word.substr(0, 40))
         text += c >= ' ' && c <= '~' ? c : '?';
     return word.size() > 40 ? text + "..." : text;
+}
+
+bool is_keyword(std::string_view word, std::string_view keyword)
+{
+    return std::equal(word.begin(), word.end(), keyword.begin(), keyword.end(),
+                      [](char a, char b) { return (a >= 'A' && a <= 'Z' ? static_cast<char>(a - 'A' + 'a') : a) == b; });
 }
 
 double TextScan::number(std::string_view word, std::string_view what) const

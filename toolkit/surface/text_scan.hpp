@@ -11,13 +11,18 @@
 
 namespace cinch {
 
+/// What a format makes of characters other than blanks and line ends.
+struct TextSyntax {
+    char comment = 0;                ///< a word that starts with this character ends its line; 0 for none
+    bool comments_end_words = false; ///< the same within a word: "1#note" is the word "1"
+    bool joined_lines = false;       ///< a backslash before the line end joins the next line (OBJ)
+};
+
 /// Walks over a text file in memory, line by line and word by word, and knows where it stands.
 /// Lines end at LF, CR LF or a lone CR. Words are separated by blanks.
 class TextScan {
 public:
-    /// `comment`: a word that starts with this character ends its line; 0 for none.
-    /// `joined_lines`: a backslash before the line end joins the next line (OBJ).
-    TextScan(std::string_view bytes, std::string file, char comment, bool joined_lines = false);
+    TextScan(std::string_view bytes, std::string file, TextSyntax syntax = {});
 
     /// Goes to the next line that has a word; false at the end of the file.
     bool next_line();
@@ -40,11 +45,11 @@ public:
 
 private:
     void skip_blanks();
+    bool starts_comment(std::size_t at) const { return syntax_.comment && bytes_[at] == syntax_.comment; }
 
     std::string_view bytes_;
     std::string file_;
-    char comment_;
-    bool joined_lines_;
+    TextSyntax syntax_;
     std::size_t at_ = 0;   // the next byte to read
     std::size_t line_ = 1; // of bytes_[at_]
     bool at_line_end_ = false;
@@ -53,5 +58,8 @@ private:
 
 /// A word for an error message: printable ASCII only, cut after 40 characters.
 std::string printable(std::string_view word);
+
+/// Whether a word is this keyword, which is in lower case, in any case.
+bool is_keyword(std::string_view word, std::string_view keyword);
 
 } // namespace cinch
