@@ -61,7 +61,7 @@ template <class T> struct Kernel {
 
 template <class T> Times measure(const Input& input, const ScalingOptions& options)
 {
-    const auto& frame = input.clip.frames.back();
+    const Clip::Frame frame = input.clip.frame(input.clip.frame_count() - 1);
     const Bvh bvh = build_bvh(input.surface, std::numeric_limits<std::size_t>::max());
     double supports[6];
     Textbook textbook(bvh, 0, frame);
@@ -148,7 +148,9 @@ int scaling_of(const ScalingOptions& options, const Provenance& from, RecordOutp
     what.input = options.input;
     what.frames = 1;
     what.seed = options.seed;
+    what.partial = options.partial;
     Input input = load_input(what);
+    output.describe(fields_of(input));
     const bool fixed = input.simulation_nodes_fixed;
     for (std::size_t i = 0; i < (fixed ? 1 : std::size(node_counts)) && !interrupted(); ++i) {
         if (!fixed) {
@@ -165,7 +167,7 @@ int scaling_of(const ScalingOptions& options, const Provenance& from, RecordOutp
     if (!options.output.records_only()) {
         for (const std::string& line : input.report)
             fmt::print("{}\n", line);
-        fmt::print("\nTime of one bound of the whole surface (six directions), {}\n\n", name_of(options.precision));
+        fmt::print("\nTime of one bound of the whole surface (six directions), {}{}\n\n", name_of(options.precision), partial_mark(input.missing));
         print_rows(records);
         fmt::print("\n{}\n", describe(from));
         std::fflush(stdout);

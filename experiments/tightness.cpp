@@ -46,33 +46,33 @@ Run measure(const Input& input, const TightnessOptions& options, bool attribute,
 {
     Run run{input.clip.name, input.surface.weights.node_count, {}};
     const Bvh bvh = build_bvh(input.surface, options.leaf);
-    const std::size_t frames = input.clip.frames.size();
-    std::vector<double> supports(bvh.bvs.size() * 6);
-    std::vector<std::vector<double>> truth(frames);
+    const std::size_t frames = input.clip.frame_count();
+    std::vector<double> supports(bvh.bvs.size() * 6), truth(supports);
     Refitter vertices(bvh, input.surface, {Method::vertices, 6, Rounding::plain});
-    for (std::size_t f = 0; f < frames; ++f) {
-        vertices(input.clip.frames[f], supports);
-        truth[f] = supports;
-    }
     std::optional<exact::Verifier> verifier;
     if (attribute)
         verifier.emplace(input.surface, bvh);
     Progress progress(fmt::format("{} nodes, '{}'", run.nodes, run.motion), options.methods.size() * frames);
-    for (std::size_t m = 0; m < options.methods.size(); ++m) {
-        Refitter refit(bvh, input.surface, {options.methods[m], 6, Rounding::proven, options.precision, options.passes});
-        std::vector<LevelRatio>& levels = run.levels[name_of(options.methods[m])];
-        levels.resize(bvh.level.size() - 1);
-        for (std::size_t f = 0; f < frames && !interrupted(); ++f) {
-            refit(input.clip.frames[f], supports);
+    std::vector<Refitter> refits;
+    for (const Methods methods : options.methods) {
+        refits.emplace_back(bvh, input.surface, RefitOptions{methods, 6, Rounding::proven, options.precision, options.passes});
+        run.levels[name_of(methods)].resize(bvh.level.size() - 1);
+    }
+    for (std::size_t f = 0; f < frames && !interrupted(); ++f) {
+        const Clip::Frame maps = input.clip.frame(f);
+        vertices(maps, truth);
+        for (std::size_t m = 0; m < options.methods.size(); ++m) {
+            std::vector<LevelRatio>& levels = run.levels[name_of(options.methods[m])];
+            refits[m](maps, supports);
             std::optional<exact::FrameVerdict> verdict;
             if (verifier) {
-                verdict = verifier->check(input.clip.frames[f], options.methods[m], 6, supports);
+                verdict = verifier->check(maps, options.methods[m], 6, supports);
                 violated |= !verdict->examples.empty();
             }
             for (std::size_t l = 0; l < levels.size(); ++l) {
                 levels[l].bvs = bvh.level[l + 1] - bvh.level[l];
                 for (std::size_t bv = bvh.level[l]; bv < bvh.level[l + 1]; ++bv) {
-                    const double whole = radius(std::span(truth[f]).subspan(6 * bv, 6)), ratio = radius(std::span(supports).subspan(6 * bv, 6)) / whole;
+                    const double whole = radius(std::span(truth).subspan(6 * bv, 6)), ratio = radius(std::span(supports).subspan(6 * bv, 6)) / whole;
                     if (!(whole > 0 && std::isfinite(ratio)))
                         continue;
                     ++levels[l].measured;
@@ -86,7 +86,7 @@ Run measure(const Input& input, const TightnessOptions& options, bool attribute,
                     levels[l].loss.corner += (loss.corner + loss.rounding) / whole;
                 }
             }
-            progress.done(m * frames + f + 1);
+            progress.done(f * options.methods.size() + m + 1);
         }
     }
     return run;
@@ -165,6 +165,7 @@ int tightness(const TightnessOptions& given)
     catch_interrupt();
 
     const Input first = load_input(options.input);
+    output.describe(fields_of(first));
     const bool scripted = !first.simulation_nodes_fixed;
     if (!options.nodes.empty() && !scripted)
         throw InputError("--sweep needs a shape or a mesh without --weights; this input brings its own simulation nodes");
@@ -216,7 +217,8 @@ int tightness(const TightnessOptions& given)
     if (!options.output.records_only()) {
         for (const std::string& line : first.report)
             fmt::print("{}\n", line);
-        fmt::print("bounds in {}, AABBs, at most {} per leaf; radius: half diagonal\n\n", name_of(options.precision), counted(options.leaf, "triangle", "triangles"));
+        fmt::print("bounds in {}, AABBs, at most {} per leaf; radius: half diagonal{}\n\n", name_of(options.precision), counted(options.leaf, "triangle", "triangles"),
+                   partial_mark(first.missing));
         for (const Run& run : full)
             print_levels(run, names);
         if (!sweep.empty()) {

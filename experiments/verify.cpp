@@ -73,7 +73,7 @@ void explain_last_frame(const Input& input, const Bvh& bvh, const VerifyOptions&
 {
     if (totals.levels.empty() || options.sabotage != Sabotage::none || options.rest_shape == RestShape::obb)
         return; // damaged data need not have a proof
-    const auto& maps = input.clip.frames[frame];
+    const Clip::Frame maps = input.clip.frame(frame);
     auto place = [&](std::size_t bv, int direction) {
         return exact::OneBound{input.surface, bvh, maps, options.methods, options.kdop, bv, direction,
                                supports[bv * static_cast<std::size_t>(options.kdop) + static_cast<std::size_t>(direction)]};
@@ -113,14 +113,15 @@ void verify_body(const Input& input, const VerifyOptions& options, LineFile* cer
         totals.volumes.resize(totals.levels.size());
     const exact::LineSink write = [&](std::string_view text) { certificate->line(text); };
     if (certificate)
-        exact::certify_rest(input.surface, bvh, options.methods, options.kdop, input.clip.frames.size(), write, options.rest_shape);
+        exact::certify_rest(input.surface, bvh, options.methods, options.kdop, input.clip.frame_count(), write, options.rest_shape);
 
     const std::size_t before = totals.frames;
     Progress progress("verifying frames", totals.frames_wanted);
     std::vector<double> supports(bvh.bvs.size() * static_cast<std::size_t>(options.kdop));
-    for (const auto& maps : input.clip.frames) {
+    for (std::size_t f = 0; f < input.clip.frame_count(); ++f) {
         if (interrupted())
             break;
+        const Clip::Frame maps = input.clip.frame(f);
         totals.unbounded_nodes += refit(maps, supports).unbounded_nodes;
         const exact::FrameVerdict verdict = verifier.check(maps, options.methods, options.kdop, supports, options.rest_shape);
         if (certificate)
@@ -151,11 +152,12 @@ int verify(const VerifyOptions& given)
     const Provenance from = provenance(threads, options.input.seed);
     RecordOutput output(options.output, from);
     const Inputs inputs = load_inputs(options.input);
+    output.describe(fields_of(inputs));
     if (inputs.bodies.size() > 1 && (!options.certificate.empty() || !options.vipr.empty()))
         throw InputError("--certificate and --vipr are of one body; --body chooses it");
     VerifyTotals totals;
     for (const Input& input : inputs.bodies)
-        totals.frames_wanted += input.clip.frames.size();
+        totals.frames_wanted += input.clip.frame_count();
     std::optional<LineFile> certificate;
     if (!options.certificate.empty())
         certificate.emplace(options.certificate);

@@ -112,9 +112,12 @@ LazyTotals verify_lazy(const Inputs& inputs, const VerifyOptions& options, Verif
     LazyTotals lazy;
     Progress progress("verifying frames", totals.frames_wanted);
     std::vector<BodyFrame> frames(inputs.bodies.size());
-    for (std::size_t f = 0; f < inputs.bodies[0].clip.frames.size() && !interrupted(); ++f) {
-        for (std::size_t b = 0; b < frames.size(); ++b)
-            frames[b] = {inputs.bodies[b].clip.frames[f]};
+    std::vector<Clip::Frame> maps(inputs.bodies.size());
+    for (std::size_t f = 0; f < inputs.bodies[0].clip.frame_count() && !interrupted(); ++f) {
+        for (std::size_t b = 0; b < frames.size(); ++b) {
+            maps[b] = inputs.bodies[b].clip.frame(f);
+            frames[b] = {maps[b]};
+        }
         collider.update(frames);
         for (std::size_t b = 0; b < frames.size(); ++b)
             proofs[b]->note_merged(collider.trees()[b]);

@@ -113,7 +113,7 @@ void print_tables(const Input& input, const CostSample& sample, const std::vecto
 {
     for (const std::string& line : input.report)
         fmt::print("{}\n", line);
-    fmt::print("one BV of each of {} levels, last frame; one core\n", sample.bvs.size());
+    fmt::print("one BV of each of {} levels, last frame; one core{}\n", sample.bvs.size(), partial_mark(input.missing));
     for (std::size_t first = 0; first < rows.size();) {
         const int kdop = rows[first].kdop;
         std::vector<std::vector<std::string>> lines;
@@ -150,6 +150,7 @@ int cost(const CostOptions& options)
     RecordOutput output(options.output, from);
     catch_interrupt();
     const Input input = load_input(options.input);
+    output.describe(fields_of(input));
     std::vector<DualGap> gaps = dual_gaps(input, options.leaf);
     if (options.all_scenes)
         for (const char* shape : {"brain", "santa", "fish"})
@@ -160,7 +161,8 @@ int cost(const CostOptions& options)
                     gaps.push_back(std::move(gap));
             }
     const Bvh bvh = build_bvh(input.surface, options.leaf);
-    CostSample sample{input.surface, bvh, input.clip.frames.back(), {}};
+    const Clip::Frame last = input.clip.frame(input.clip.frame_count() - 1);
+    CostSample sample{input.surface, bvh, last, {}};
     for (std::size_t l = 0; l + 1 < bvh.level.size(); ++l)
         sample.bvs.push_back((bvh.level[l] + bvh.level[l + 1]) / 2);
     pin_to_one_core();

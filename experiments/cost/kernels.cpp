@@ -61,7 +61,8 @@ std::vector<DualGap> dual_gaps(const Input& input, std::size_t leaf)
         std::vector<Refitter> refits;
         for (int passes = 0; passes < 5; ++passes)
             refits.emplace_back(bvh, input.surface, RefitOptions{method, 6, Rounding::plain, Precision::float64, passes});
-        for (const auto& maps : input.clip.frames) {
+        for (std::size_t f = 0; f < input.clip.frame_count(); ++f) {
+            const Clip::Frame maps = input.clip.frame(f);
             optimum(maps, best);
             for (int passes = 0; passes < 5; ++passes) {
                 refits[static_cast<std::size_t>(passes)](maps, bound);

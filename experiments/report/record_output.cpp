@@ -89,15 +89,18 @@ RecordOutput::RecordOutput(const OutputOptions& options, const Provenance& from)
         }
 }
 
+void RecordOutput::describe(const Json& input) { input_.update(input); }
+
 void RecordOutput::add(const Json& record)
 {
-    if (options_.json) {
-        Json line = record;
-        line.update(from_);
-        fmt::print("{}\n", dumped(line));
-    }
+    Json described = record;
+    described.update(input_);
     if (options_.csv || !options_.plot.empty() || !options_.report.empty())
-        records_.push_back(record);
+        records_.push_back(described);
+    if (options_.json) {
+        described.update(from_);
+        fmt::print("{}\n", dumped(described));
+    }
 }
 
 void RecordOutput::add_all(const std::vector<Json>& records)

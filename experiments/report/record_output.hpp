@@ -25,12 +25,16 @@ class RecordOutput {
 public:
     /// To be made before measuring: throws InputError if gnuplot is missing, or a file cannot be written.
     RecordOutput(const OutputOptions& options, const Provenance& from);
+    /// Fields of the input that every record carries from now on; "partial" and "missing" are among them in any case: false and none,
+    /// until this says otherwise.
+    void describe(const nlohmann::ordered_json& input);
     void add(const nlohmann::ordered_json& record);
     void add_all(const std::vector<nlohmann::ordered_json>& records);
     void finish();
 
 private:
     OutputOptions options_;
+    nlohmann::ordered_json input_{{"partial", false}, {"missing", nlohmann::ordered_json::array()}};
     nlohmann::ordered_json from_;
     std::vector<nlohmann::ordered_json> records_;
 };
