@@ -40,6 +40,7 @@ int view(const ViewOptions& options)
     for (const ViewRequest& request : wanted)
         if (views.empty() || !interrupted()) {
             views.push_back(make_view(request));
+            output.describe({{"partial", !views.back()["missing"].empty()}, {"missing", views.back()["missing"]}});
             output.add({{"experiment", "view"}, {"scene", views.back()["scene"]}, {"frames", views.back()["time_s"].size()}, {"view", views.back()}});
         }
     output.finish();

@@ -144,6 +144,8 @@ LoadedBody load_body(const SceneBody& body, const std::string& file, MeshCache& 
             complain(file, body, "size", "a character keeps its own size");
         try {
             character = read_gltf(body.surface);
+            if (character->animations.empty())
+                rest_pose(*character); // says what is missing in it
         } catch (const InputError& error) {
             complain(file, body, "surface", error.what());
         }

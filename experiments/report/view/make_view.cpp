@@ -258,6 +258,7 @@ nlohmann::ordered_json make_view(const ViewRequest& request)
     what.frames = request.frames - (what.first_frame ? 1 : 0);
     what.nodes = request.nodes;
     what.seed = request.seed;
+    what.partial = request.partial;
     const Inputs inputs = load_inputs(what);
 
     std::vector<DrawnBody> bodies;
@@ -270,6 +271,7 @@ nlohmann::ordered_json make_view(const ViewRequest& request)
         times.push_back(inputs.bodies[0].clip.time_s(f));
     const DrawnBvs bvs(bodies, request.levels);
     Json view{{"title", request.title.empty() ? inputs.name : request.title}, {"text", request.text}, {"scene", request.scene}};
+    view["missing"] = inputs.missing();
     view["first"] = shown_first(request, frames, bvs.level.size() - 1);
     view["time_s"] = times;
     view["bodies"] = Json::array();
