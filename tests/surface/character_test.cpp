@@ -93,7 +93,7 @@ TEST_CASE("malformed characters are refused in one line")
     SECTION("joint index") { d.root["accessors"][1]["bufferView"] = d.view<std::uint8_t>(std::vector<std::uint8_t>(16, 7)); refused(d, "names joint 7; skin 0 has 2"); }
     SECTION("negative joint index") { d.root["accessors"][1]["bufferView"] = d.view<std::int8_t>(std::vector<std::int8_t>(16, -3)); d.root["accessors"][1]["componentType"] = 5120; refused(d, "names joint -3"); }
     SECTION("vertex index") { d.root["accessors"][4]["bufferView"] = d.view<std::uint16_t>({0, 1, 2, 3, 1, 9}); refused(d, "vertex index 9 is out of range"); }
-    SECTION("accessor past its view") { d.root["accessors"][0]["count"] = 5; refused(d, "reaches past its buffer view"); }
+    SECTION("accessor past its view") { d.root["accessors"][0]["count"] = 5; refused(d, "reaches past bufferViews[0]"); }
     SECTION("absurd count") { d.root["accessors"][0]["count"] = 4000000000u; refused(d, "more than the file's buffers have bytes"); }
     SECTION("NaN") { d.root["accessors"][0]["bufferView"] = d.view<float>(std::vector<float>(12, NAN)); refused(d, "not finite"); }
     SECTION("cycle") { d.root["nodes"][1]["children"] = {2}; d.root["nodes"][2]["children"] = {1}; refused(d, "its own ancestor"); }

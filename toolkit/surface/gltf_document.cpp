@@ -81,7 +81,7 @@ std::string one_line(std::string_view text)
 {
     std::string out;
     for (const char c : text)
-        out += c >= 32 && c < 127 ? c : '?';
+        out += static_cast<unsigned char>(c) < 32 || c == 127 ? '?' : c;
     return out;
 }
 
@@ -311,7 +311,11 @@ std::string GltfDocument::load(std::size_t i) const
     if (!is_data_uri(uri)) {
         if (uri.find("://") != std::string::npos)
             value.fail("lies elsewhere, at " + one_line(uri) + "; files beside this one are read");
-        return read_bytes(path_of(uri, file_));
+        try {
+            return read_bytes(path_of(uri, file_));
+        } catch (const InputError& error) {
+            throw InputError::in_file(file_, value.place() + " cannot be read: " + one_line(error.what()));
+        }
     }
     const auto comma = uri.find(',');
     if (comma == std::string::npos)

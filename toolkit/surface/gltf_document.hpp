@@ -82,7 +82,7 @@ private:
     std::uintmax_t bytes_ = 0;
 };
 
-/// A text from a file as one line of printable ASCII, whole.
+/// A text from a file as one line, whole: control characters become question marks.
 std::string one_line(std::string_view text);
 
 /// An URI's path as a file name: %XX are bytes, all else, '+' too, stands for itself.

@@ -142,7 +142,8 @@ std::uint32_t GltfSkeleton::add_bone(std::size_t node)
         const GltfValue value = document_.at("nodes", i);
         note_extensions(value, missing_, {"KHR_node_visibility"});
         Bone bone;
-        bone.parent = scene_.parent[i] < 0 ? -1 : bone_of_node_[static_cast<std::size_t>(scene_.parent[i])];
+        if (scene_.parent[i] >= 0)
+            bone.parent = bone_of_node_[static_cast<std::size_t>(scene_.parent[i])];
         auto copy = [&](const char* key, auto& to) {
             if (const auto given = value.find(key)) {
                 const std::vector<double> numbers = given->numbers(to.size());
