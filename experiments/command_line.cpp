@@ -75,6 +75,8 @@ void add_input(CLI::App& command, InputOptions& o)
     option("--frames", o.frames, "how many frames, evenly spread, the last one included [4 if scripted, else all]")
         ->check(CLI::Range(1, 100000))->option_text("N");
     option("--seed", o.seed, "seed of everything random [0]")->option_text("N");
+    command.add_flag("--partial", o.partial, wrapped("bound what is modelled of a character that has more (morph targets, parts without a skin, unknown extensions); every result "
+                                                     "then says 'partial' and what is missing [refused]"));
 }
 #endif
 
@@ -84,6 +86,7 @@ void add_scaling(CLI::App& app, ScalingOptions& o)
 {
     CLI::App& command = *app.add_subcommand("scaling", "time by simulation nodes and vertices (Table 1)");
     command.add_option("INPUT", o.input, wrapped("a scene, mesh or character to measure instead of the brain"))->option_text("");
+    command.add_flag("--partial", o.partial, wrapped("of a character: what is modelled, saying what is missing [refused]"));
     add_arithmetic(command, o.precision, o.passes);
     command.add_option("--seconds", o.seconds, wrapped("of measuring per size [1]"))->check(CLI::Range(0.001, 1e6))->option_text("X");
     command.add_option("--seed", o.seed, wrapped("seed of everything random [0]"))->option_text("N");

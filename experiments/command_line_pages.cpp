@@ -35,6 +35,7 @@ void add_view(CLI::App& app, ViewOptions& o)
     option("--bits", o.request.bits, "of the grid that positions are rounded to [16]; fewer make a smaller page")->check(CLI::Range(8, 16))->option_text("N")->needs(scene);
     option("--nodes", o.request.nodes, "simulation nodes per body, where they are sampled [as usual]")->check(CLI::Range(1, 100000))->option_text("N")->needs(scene);
     option("--seed", o.request.seed, "seed of everything random [0]")->option_text("N");
+    command.add_flag("--partial", o.request.partial, wrapped("of a character: what is modelled, saying what is missing [refused]"))->needs(scene);
     command.add_option_function<std::vector<double>>("--camera", [&o](const std::vector<double>& degrees) {
         o.request.azimuth = degrees[0];
         o.request.elevation = degrees[1];

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "experiments/guard_surface.hpp"
 #include "experiments/report/interrupt.hpp"
@@ -37,24 +38,10 @@ void refuse_options(const InputOptions& o, bool scripted, bool clips, bool sampl
     }
     if (!clips)
         refuse(!o.clip.empty(), "--clip", "a skinned character (.glb, .gltf) or --transforms");
-    if (!sampled)
+    if (!sampled) {
         refuse(o.fps != 0, "--fps", "a skinned character (.glb, .gltf)");
-}
-
-// `frames` of the clip, evenly spread, the last one included; 0 keeps all.
-void thin_out(Clip& clip, std::size_t frames)
-{
-    const std::size_t all = clip.frames.size();
-    if (frames == 0 || frames >= all)
-        return;
-    Clip kept;
-    kept.name = clip.name;
-    for (std::size_t i = 0; i < frames; ++i) {
-        const std::size_t f = frames == 1 ? all - 1 : (i * (all - 1) + (frames - 1) / 2) / (frames - 1);
-        kept.time_s.push_back(clip.time_s[f]);
-        kept.frames.push_back(std::move(clip.frames[f]));
+        refuse(o.partial, "--partial", "a skinned character (.glb, .gltf)");
     }
-    clip = std::move(kept);
 }
 
 void script(Input& input, const InputOptions& options, std::size_t default_nodes)
@@ -78,12 +65,15 @@ void script(Input& input, const InputOptions& options, std::size_t default_nodes
         input.report.push_back(fmt::format("{} beyond the reach of every simulation node; each follows its nearest one", counted(alone, "vertex lies", "vertices lie")));
 }
 
-void report_weights(Input& input, const WeightReport& weights)
+// Normalises the weights of a file.
+void take_weights(Input& input, const Influences& influences)
 {
-    if (weights.off_by_a_thousandth)
-        input.report.push_back(fmt::format("{} of {} had weights that sum to less than 0.999 or more than 1.001 (sums {:.4f} to {:.4f}); normalised",
-                                           grouped(weights.off_by_a_thousandth), counted(weights.vertices, "vertex", "vertices"),
-                                           weights.least_sum, weights.greatest_sum));
+    WeightReport& weights = input.weights_read;
+    input.surface.weights = to_dyadic(influences, &weights);
+    if (weights.normalised)
+        input.report.push_back(fmt::format("{} of {} had weights that do not sum to 1 (sums {:.7g} to {:.7g}); normalised, which changed weights by up to {:.3g} %{}",
+                                           grouped(weights.normalised), counted(weights.vertices, "vertex", "vertices"), weights.least_sum, weights.greatest_sum,
+                                           100 * weights.largest_change, influences.step > 0 && !weights.beyond_steps ? ", no more than their integers are coarse" : ""));
     if (weights.without_weight)
         input.report.push_back(fmt::format("{} no weight at all; bound to the first simulation node named", counted(weights.without_weight, "vertex has", "vertices have")));
 }
@@ -105,19 +95,26 @@ void load_character(Input& input, const InputOptions& options)
     refuse_options(options, false, true, true);
     if (!options.weights.empty() || !options.transforms.empty())
         throw InputError("--weights and --transforms need a mesh (OBJ, OFF, PLY, STL)");
-    Character character = read_gltf(options.input);
-    if (character.animations.empty() && options.clip.empty())
-        input.clip = rest_pose(character);
-    else
-        input.clip = sample(character, choose_clip(character.animations, options.clip, options.input), options.fps > 0 ? options.fps : 30);
+    Character character = read_gltf(options.input, Coverage::partial);
+    const bool rest = character.animations.empty() && options.clip.empty();
+    const Character::Animation& animation = rest ? character.rest : choose_clip(character.animations, options.clip, options.input);
+    input.missing = character.missing;
+    input.missing.insert(input.missing.end(), animation.missing.begin(), animation.missing.end());
+    if (!input.missing.empty() && !options.partial)
+        throw InputError::in_file(options.input, fmt::format("has {}; --partial bounds the rest, and every result says so", not_modelled(input.missing)));
+    const Clip clip = sample(character, animation, options.fps > 0 ? options.fps : 30);
+    constexpr std::size_t most_frames = 1'000'000; // of which nobody waits for the end; a choice among more is no trouble
+    if (options.frames == 0 && clip.frame_count() > most_frames)
+        throw InputError::in_file(options.input, fmt::format("clip '{}' has {} frames at this rate; --frames chooses some, --fps takes fewer", clip.name, grouped(clip.frame_count())));
+    input.clip = evenly_spread(clip, options.frames);
     if (character.animations.size() > 1 && options.clip.empty())
         input.report.push_back(fmt::format("{} clips; the first is used, --clip chooses another", character.animations.size()));
-    thin_out(input.clip, options.frames);
     input.report.insert(input.report.end(), character.notes.begin(), character.notes.end());
-    WeightReport weights;
-    input.surface.weights = to_dyadic(character.influences, &weights);
+    input.report.insert(input.report.end(), animation.notes.begin(), animation.notes.end());
+    if (!input.missing.empty())
+        input.report.push_back(fmt::format("partial, without {}", fmt::join(input.missing, "; ")));
+    take_weights(input, character.influences);
     input.surface.mesh = std::move(character.mesh);
-    report_weights(input, weights);
 }
 
 void load_skin_text(Input& input, const InputOptions& options)
@@ -127,11 +124,9 @@ void load_skin_text(Input& input, const InputOptions& options)
     if (options.weights.empty() || options.transforms.empty())
         throw InputError("--weights and --transforms go together");
     const Influences influences = read_weights_text(options.weights, input.surface.mesh.vertices.size());
-    input.clip = choose_clip(read_clips_text(options.transforms, influences.node_count), options.clip, options.transforms);
-    thin_out(input.clip, options.frames);
-    WeightReport weights;
-    input.surface.weights = to_dyadic(influences, &weights);
-    report_weights(input, weights);
+    const std::vector<Clip> clips = read_clips_text(options.transforms, influences.node_count);
+    input.clip = evenly_spread(choose_clip(clips, options.clip, options.transforms), options.frames);
+    take_weights(input, influences);
 }
 
 bool is_character_file(const std::filesystem::path& path)
@@ -168,14 +163,14 @@ Inputs load_scene(const InputOptions& options)
         body.simulation_nodes_fixed = found.scene.bodies[b].nodes == 0;
         body.surface = *simulation.bodies()[b].simulation.surface();
         body.nodes = simulation.bodies()[b].simulation.body().rest;
-        body.clip.name = "simulated";
         inputs.bodies.push_back(std::move(body));
     }
+    std::vector<double> times;
+    std::vector<std::vector<Clip::Frame>> kept(chosen.size());
     auto record = [&] {
-        for (std::size_t i = 0; i < chosen.size(); ++i) {
-            inputs.bodies[i].clip.time_s.push_back(simulation.time_s());
-            inputs.bodies[i].clip.frames.push_back(simulation.bodies()[chosen[i]].simulation.frame());
-        }
+        times.push_back(simulation.time_s());
+        for (std::size_t i = 0; i < chosen.size(); ++i)
+            kept[i].push_back(simulation.bodies()[chosen[i]].simulation.frame());
     };
     if (options.first_frame)
         record();
@@ -196,6 +191,8 @@ Inputs load_scene(const InputOptions& options)
     }
     if (last == 0 && !options.first_frame)
         record();
+    for (std::size_t i = 0; i < chosen.size(); ++i)
+        inputs.bodies[i].clip = Clip("simulated", times, std::move(kept[i]));
     std::size_t vertices = 0, triangles = 0, nodes = 0, influences = 0;
     for (const Input& body : inputs.bodies) {
         vertices += body.surface.mesh.vertices.size();
@@ -206,13 +203,45 @@ Inputs load_scene(const InputOptions& options)
     inputs.report = {fmt::format("{}: {}, {}, {}", options.input, counted(inputs.bodies.size(), "body", "bodies"), counted(vertices, "vertex", "vertices"),
                                  counted(triangles, "triangle", "triangles")),
                      fmt::format("{}, {:.1f} influences per vertex; simulated, {}", counted(nodes, "simulation node", "simulation nodes"),
-                                 static_cast<double>(influences) / static_cast<double>(vertices), counted(inputs.bodies[0].clip.frames.size(), "frame", "frames"))};
+                                 static_cast<double>(influences) / static_cast<double>(vertices), counted(inputs.bodies[0].clip.frame_count(), "frame", "frames"))};
     const std::vector<std::string> notes = simulation.notes();
     inputs.report.insert(inputs.report.end(), notes.begin(), notes.end());
     return inputs;
 }
 
 } // namespace
+
+std::vector<std::string> Inputs::missing() const
+{
+    std::vector<std::string> all;
+    for (const Input& body : bodies)
+        all.insert(all.end(), body.missing.begin(), body.missing.end());
+    return all;
+}
+
+namespace {
+
+nlohmann::ordered_json fields(const std::vector<std::string>& missing, std::span<const Input> bodies)
+{
+    std::size_t normalised = 0;
+    double change = 0;
+    for (const Input& body : bodies) {
+        normalised += body.weights_read.normalised;
+        change = std::max(change, body.weights_read.largest_change);
+    }
+    return {{"partial", !missing.empty()}, {"missing", missing}, {"weights_normalised", normalised}, {"largest_weight_change", change}};
+}
+
+} // namespace
+
+nlohmann::ordered_json fields_of(const Input& input) { return fields(input.missing, {&input, 1}); }
+
+nlohmann::ordered_json fields_of(const Inputs& inputs) { return fields(inputs.missing(), inputs.bodies); }
+
+std::string partial_mark(const std::vector<std::string>& missing)
+{
+    return missing.empty() ? "" : fmt::format(" (partial, without {})", fmt::join(missing, "; "));
+}
 
 Inputs load_inputs(const InputOptions& options)
 {
@@ -273,7 +302,7 @@ Input load_input(const InputOptions& options)
                                      counted(input.surface.mesh.triangles.size(), "triangle", "triangles")),
                          fmt::format("{}, {} influences per vertex; motion '{}', {}",
                                      counted(weights.node_count, "simulation node", "simulation nodes"), influences, input.clip.name,
-                                     counted(input.clip.frames.size(), "frame", "frames"))});
+                                     counted(input.clip.frame_count(), "frame", "frames"))});
     return input;
 }
 

@@ -5,7 +5,10 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "toolkit/deform/surface.hpp"
+#include "toolkit/deform/weights.hpp"
 #include "toolkit/surface/skin.hpp"
 
 namespace cinch {
@@ -24,6 +27,7 @@ struct InputOptions {
     bool first_frame = false; ///< of a scene: the one at time 0 too
     std::uint64_t seed = 0;
     std::string body; ///< of a scene; empty: all of them, or the first where one is asked for
+    bool partial = false; ///< of a character: bound what is modelled, and say what is missing; else what is not modelled is refused
 };
 
 /// A surface with the frames that deform it.
@@ -35,6 +39,8 @@ struct Input {
     bool simulated = false; ///< by a scene
     bool simulation_nodes_fixed = false; ///< the input brings its own, instead of as many as asked for
     std::vector<std::string> report; ///< one line each: what was loaded, and what was changed or left out
+    std::vector<std::string> missing; ///< what the file deforms or draws and the surface or its motion lacks, by name; empty: it is whole
+    WeightReport weights_read; ///< what normalising the file's weights changed, where a file gives them
 };
 
 /// Loads a shipped shape, a mesh (with scripted motion, or with weights and transforms), a skinned character, or a scene, which is
@@ -46,7 +52,17 @@ struct Inputs {
     std::string name;
     std::vector<std::string> report;
     std::vector<Input> bodies; ///< at least one
+
+    std::vector<std::string> missing() const; ///< of all bodies
 };
 Inputs load_inputs(const InputOptions& options);
+
+/// What every record of results on an input says of it, for RecordOutput::describe: whether it is partial, what is missing, and what
+/// normalising its weights changed.
+nlohmann::ordered_json fields_of(const Input& input);
+nlohmann::ordered_json fields_of(const Inputs& inputs);
+
+/// For the line that people take the result from: " (partial, without A; B)", or nothing where nothing is missing.
+std::string partial_mark(const std::vector<std::string>& missing);
 
 } // namespace cinch

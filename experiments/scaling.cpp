@@ -62,7 +62,7 @@ template <class T> struct Kernel {
 
 template <class T> Times measure(const Input& input, const ScalingOptions& options)
 {
-    const auto& frame = input.clip.frames.back();
+    const Clip::Frame frame = input.clip.frame(input.clip.frame_count() - 1);
     const Bvh bvh = build_bvh(input.surface, std::numeric_limits<std::size_t>::max());
     double supports[6];
     Textbook textbook(bvh, 0, frame);
@@ -154,7 +154,9 @@ int scaling_of(const ScalingOptions& options, const Provenance& from, RecordOutp
     what.input = options.input;
     what.frames = 1;
     what.seed = options.seed;
+    what.partial = options.partial;
     Input input = load_input(what);
+    output.describe(fields_of(input));
     const bool fixed = input.simulation_nodes_fixed;
     const std::size_t wanted = fixed ? 1 : std::size(node_counts);
     catch_interrupt();
@@ -180,7 +182,7 @@ int scaling_of(const ScalingOptions& options, const Provenance& from, RecordOutp
         print_note(completeness);
         for (const std::string& line : input.report)
             fmt::print("{}\n", line);
-        fmt::print("\nTime of one bound of the whole surface (six directions), {}\n\n", name_of(options.precision));
+        fmt::print("\nTime of one bound of the whole surface (six directions), {}{}\n\n", name_of(options.precision), partial_mark(input.missing));
         print_rows(records);
         fmt::print("\n{}\n", describe(from));
         std::fflush(stdout);

@@ -14,6 +14,7 @@ struct ScalingOptions {
     double seconds = 1; ///< of measuring per size
     std::uint64_t seed = 0;
     std::string input; ///< measured instead of the brain: a scene's first body, a mesh or a character
+    bool partial = false; ///< of a character: what is modelled, see InputOptions
     OutputOptions output;
 };
 

@@ -92,7 +92,7 @@ struct Prepared {
 Run measure(const std::shared_ptr<const Input>& shared, const TightnessOptions& options, bool attribute, bool& violated)
 {
     const Input& input = *shared;
-    const std::size_t frames = input.clip.frames.size();
+    const std::size_t frames = input.clip.frame_count();
     Run run{input.clip.name, input.surface.weights.node_count, 0, frames, {}};
     Progress progress(fmt::format("{} nodes, '{}'", run.nodes, run.motion), options.methods.size() * frames);
     try {
@@ -101,13 +101,14 @@ Run measure(const std::shared_ptr<const Input>& shared, const TightnessOptions& 
         std::vector<double> truth(bvh.bvs.size() * 6), supports(truth);
         for (std::size_t f = 0; f < frames; ++f) {
             std::map<std::string, std::vector<LevelRatio>> now = run.levels; // kept if the frame is whole
-            prepared->vertices(input.clip.frames[f], truth);
+            const Clip::Frame maps = input.clip.frame(f);
+            prepared->vertices(maps, truth);
             for (std::size_t m = 0; m < options.methods.size(); ++m) {
                 throw_if_interrupted();
-                prepared->refits[m](input.clip.frames[f], supports);
+                prepared->refits[m](maps, supports);
                 std::optional<exact::FrameVerdict> verdict;
                 if (attribute) {
-                    verdict = prepared->verifier->check(input.clip.frames[f], options.methods[m], 6, supports);
+                    verdict = prepared->verifier->check(maps, options.methods[m], 6, supports);
                     violated |= !verdict->examples.empty();
                 }
                 add_frame(bvh, truth, supports, verdict ? &*verdict : nullptr, now[name_of(options.methods[m])]);
@@ -282,6 +283,7 @@ int tightness(const TightnessOptions& given)
     const Provenance from = provenance(threads, options.input.seed);
     RecordOutput output(options.output, from);
     const Input first = load_input(options.input);
+    output.describe(fields_of(first));
     const bool scripted = !first.simulation_nodes_fixed;
     if (!options.nodes.empty() && !scripted)
         throw InputError("--sweep needs a shape or a mesh without --weights; this input brings its own simulation nodes");
@@ -299,7 +301,7 @@ int tightness(const TightnessOptions& given)
         measure_all(options, measured);
     } catch (const Interrupted&) { // what was measured is kept
     }
-    const Completeness completeness = measured.completeness(first.clip.frames.size());
+    const Completeness completeness = measured.completeness(first.clip.frame_count());
     std::vector<nlohmann::ordered_json> records;
     for (const auto* runs : {&measured.full, &measured.sweep})
         for (const Run& run : *runs)

@@ -92,7 +92,7 @@ void explain_last_frame(const Input& input, const Bvh& bvh, const VerifyOptions&
 {
     if (totals.levels.empty() || options.sabotage != Sabotage::none || options.rest_shape == RestShape::obb)
         return; // damaged data need not have a proof
-    const auto& maps = input.clip.frames[frame];
+    const Clip::Frame maps = input.clip.frame(frame);
     auto place = [&](std::size_t bv, int direction) {
         return exact::OneBound{input.surface, bvh, maps, options.methods, options.kdop, bv, direction,
                                supports[bv * static_cast<std::size_t>(options.kdop) + static_cast<std::size_t>(direction)]};
@@ -159,8 +159,8 @@ void verify_body(const std::shared_ptr<const Inputs>& inputs, const Input& input
                                    .kdop = options.kdop,
                                    .shape = options.rest_shape,
                                    .clip = input.clip.name,
-                                   .frames = input.clip.frames.size(),
-                                   .missing = {}},
+                                   .frames = input.clip.frame_count(),
+                                   .missing = input.missing},
                       [=](std::string_view text) {
                           throw_if_interrupted(); // then none is written
                           certificate->line(text);
@@ -169,8 +169,9 @@ void verify_body(const std::shared_ptr<const Inputs>& inputs, const Input& input
     const std::size_t before = totals.frames;
     Progress progress("verifying frames", totals.frames_wanted);
     std::vector<double> supports(bvh.bvs.size() * static_cast<std::size_t>(options.kdop));
-    for (const auto& maps : input.clip.frames) {
+    for (std::size_t f = 0; f < input.clip.frame_count(); ++f) {
         throw_if_interrupted();
+        const Clip::Frame maps = input.clip.frame(f);
         const std::size_t unbounded = refit(maps, supports).unbounded_nodes;
         const exact::FrameVerdict verdict = verifier.check(maps, options.methods, options.kdop, supports, options.rest_shape);
         std::vector<VolumeTotals> volumes = totals.volumes; // kept with their frame
@@ -181,7 +182,7 @@ void verify_body(const std::shared_ptr<const Inputs>& inputs, const Input& input
         LadderTotals compared = totals.ladder;
         ladder.check(maps, supports, compared);
         if (proof)
-            proof->frame(input.clip.time_s[totals.frames - before], maps, supports, verdict);
+            proof->frame(input.clip.time_s(f), maps, supports, verdict);
         if (totals.frames == before)
             add_levels(bvh, totals);
         add(bvh, verdict, options.kdop, {}, totals);
@@ -191,7 +192,7 @@ void verify_body(const std::shared_ptr<const Inputs>& inputs, const Input& input
         totals.infinite += static_cast<std::size_t>(std::count_if(supports.begin(), supports.end(), [](double s) { return std::isinf(s); }));
         progress.done(totals.frames);
     }
-    if (proof && totals.frames - before == input.clip.frames.size())
+    if (proof && totals.frames - before == input.clip.frame_count())
         proof->end();
     if (totals.frames > before)
         explain_last_frame(input, bvh, options, totals.frames - before - 1, supports, totals);
@@ -216,11 +217,12 @@ int verify(const VerifyOptions& given)
         certificate.emplace(options.certificate);
     const auto shared = std::make_shared<const Inputs>(load_inputs(options.input));
     const Inputs& inputs = *shared;
+    output.describe(fields_of(inputs));
     if (inputs.bodies.size() > 1 && (!options.certificate.empty() || !options.vipr.empty()))
         throw InputError("--certificate and --vipr are of one body; --body chooses it");
     VerifyTotals totals;
     for (const Input& input : inputs.bodies)
-        totals.frames_wanted += input.clip.frames.size();
+        totals.frames_wanted += input.clip.frame_count();
     if (!options.vipr.empty())
         std::filesystem::create_directories(options.vipr);
     catch_interrupt();

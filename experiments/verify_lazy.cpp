@@ -111,10 +111,13 @@ void verify_lazy(const Inputs& inputs, const VerifyOptions& options, VerifyTotal
     }
     Progress progress("verifying frames", totals.frames_wanted);
     std::vector<BodyFrame> frames(inputs.bodies.size());
-    for (std::size_t f = 0; f < inputs.bodies[0].clip.frames.size(); ++f) {
+    std::vector<Clip::Frame> maps(inputs.bodies.size());
+    for (std::size_t f = 0; f < inputs.bodies[0].clip.frame_count(); ++f) {
         throw_if_interrupted();
-        for (std::size_t b = 0; b < frames.size(); ++b)
-            frames[b] = {inputs.bodies[b].clip.frames[f]};
+        for (std::size_t b = 0; b < frames.size(); ++b) {
+            maps[b] = inputs.bodies[b].clip.frame(f);
+            frames[b] = {maps[b]};
+        }
         collider.update(frames);
         for (std::size_t b = 0; b < frames.size(); ++b)
             proofs[b]->note_merged(collider.trees()[b]);

@@ -42,7 +42,7 @@ void print_lazy_table(const Inputs& input, const VerifyOptions& options, const V
                share(static_cast<double>(lazy.from_vertices), steps), share(static_cast<double>(lazy.left), steps));
     if (totals.infinite)
         fmt::print("{} infinite: something overflows the arithmetic\n", counted(totals.infinite, "bound is", "bounds are"));
-    fmt::print("{} bounds, {} proven, {} violated\n", grouped(totals.bounds), grouped(totals.proven), grouped(totals.violated));
+    fmt::print("{} bounds, {} proven, {} violated{}\n", grouped(totals.bounds), grouped(totals.proven), grouped(totals.violated), partial_mark(input.missing()));
     fmt::print("{}\n{}\n", duration(totals.seconds), describe(from));
 }
 

@@ -95,7 +95,7 @@ void print_table(const Inputs& input, const VerifyOptions& options, const Verify
                    static_cast<double>(totals.rest_bytes) / 1e6);
     if (totals.infinite)
         fmt::print("{} infinite: something overflows the arithmetic\n", counted(totals.infinite, "bound is", "bounds are"));
-    fmt::print("{} bounds, {} proven, {} violated\n", grouped(totals.bounds), grouped(totals.proven), grouped(totals.violated));
+    fmt::print("{} bounds, {} proven, {} violated{}\n", grouped(totals.bounds), grouped(totals.proven), grouped(totals.violated), partial_mark(input.missing()));
     fmt::print("{}, filter hit rate {:.4f}\n{}\n", duration(totals.seconds), rate(totals.decided_by_filter, totals.bounds), describe(from));
 }
 

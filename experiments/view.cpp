@@ -41,6 +41,7 @@ int view(const ViewOptions& options)
             if (done < methods)
                 view["text"] = fmt::format("{} ({})", view["text"].get<std::string>(), interrupted_after(done, methods, "methods"));
             whole += done == methods;
+            output.describe({{"partial", !view["missing"].empty()}, {"missing", view["missing"]}});
             output.add({{"experiment", "view"}, {"scene", view["scene"]}, {"frames_done", frames}, {"frames", frames}, {"complete", done == methods}, {"view", view}});
             views.push_back(std::move(view));
         }

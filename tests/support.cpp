@@ -102,7 +102,9 @@ Example example(std::size_t vertices, std::size_t nodes)
     centre_and_scale(out.surface.mesh, 1.2);
     const SimulationNodes sampled = sample_nodes(out.surface.mesh, nodes, 0);
     out.surface.weights = kernel_weights(out.surface.mesh, sampled, 2);
-    out.frames = scripted_clip(*named_motion("strong"), sampled.position, 3).frames;
+    const Clip clip = scripted_clip(*named_motion("strong"), sampled.position, 3);
+    for (std::size_t f = 0; f < clip.frame_count(); ++f)
+        out.frames.push_back(clip.frame(f));
     return out;
 }
 

@@ -18,6 +18,7 @@ namespace {
 struct Scene {
     Input input;
     Bvh bvh;
+    Clip::Frame frame;
 };
 
 // The shipped 3,500-vertex brain with so many simulation nodes, as one BV.
@@ -30,7 +31,8 @@ const Scene& scene(std::size_t nodes)
         options.input = "brain-3500";
         options.nodes = nodes;
         options.frames = 1;
-        Scene s{load_input(options), {}};
+        Scene s{load_input(options), {}, {}};
+        s.frame = s.input.clip.frame(0);
         s.bvh = build_bvh(s.input.surface, std::numeric_limits<std::size_t>::max());
         found = all.emplace(nodes, std::move(s)).first;
     }
@@ -42,7 +44,7 @@ template <class T> void kernel(benchmark::State& state, Method method, int kdop,
     const Scene& s = scene(static_cast<std::size_t>(state.range(0)));
     const PackedBvh<T> packed = pack<T>(s.bvh, s.input.surface, choose_kinds(s.bvh, s.input.surface, method));
     ProjectedMaps<T> maps;
-    project(std::span<const AffineMap>(s.input.clip.frames[0]), packed.rest, kdop, rounding, maps);
+    project(std::span<const AffineMap>(s.frame), packed.rest, kdop, rounding, maps);
     KernelScratch<T> scratch;
     double supports[26];
     for (auto _ : state) {
@@ -58,7 +60,7 @@ void readable(benchmark::State& state, Method method)
     BoundScratch scratch;
     double supports[6];
     for (auto _ : state) {
-        bound_box(s.bvh.rest(0), s.input.clip.frames[0], method, Rounding::proven, axes_of(6), scratch, supports);
+        bound_box(s.bvh.rest(0), s.frame, method, Rounding::proven, axes_of(6), scratch, supports);
         benchmark::DoNotOptimize(supports);
     }
 }
@@ -66,7 +68,7 @@ void readable(benchmark::State& state, Method method)
 void textbook(benchmark::State& state, TransformedBox box)
 {
     const Scene& s = scene(static_cast<std::size_t>(state.range(0)));
-    Textbook eq12(s.bvh, 0, s.input.clip.frames[0]);
+    Textbook eq12(s.bvh, 0, s.frame);
     double supports[6];
     for (auto _ : state) {
         eq12.bound(box, supports);
@@ -80,7 +82,7 @@ void projection(benchmark::State& state, int kdop)
     const RestExtent rest = rest_extent(s.bvh, s.input.surface);
     ProjectedMaps<float> maps;
     for (auto _ : state)
-        project<float>(s.input.clip.frames[0], rest, kdop, Rounding::proven, maps);
+        project<float>(s.frame, rest, kdop, Rounding::proven, maps);
 }
 
 void evaluation(benchmark::State& state)
@@ -88,7 +90,7 @@ void evaluation(benchmark::State& state)
     const Scene& s = scene(static_cast<std::size_t>(state.range(0)));
     std::vector<Vec3> out(s.input.surface.mesh.vertices.size());
     for (auto _ : state)
-        evaluate(s.input.surface.mesh.vertices, s.input.surface.weights, s.input.clip.frames[0], out);
+        evaluate(s.input.surface.mesh.vertices, s.input.surface.weights, s.frame, out);
 }
 
 } // namespace

@@ -10,13 +10,27 @@
 
 namespace cinch {
 
-/// The bodies of a scene and their frames; all bodies have the same number of them.
-struct CollideScene {
+/// The bodies of a scene and their frames; all bodies have the same number of them. The frames are made beforehand: what is timed is
+/// what a backend does with them.
+class CollideScene {
+public:
+    CollideScene(std::string scene_name, std::vector<Input> scene_bodies) : name(std::move(scene_name)), bodies(std::move(scene_bodies))
+    {
+        for (const Input& body : bodies) {
+            maps_.emplace_back();
+            for (std::size_t f = 0; f < frames(); ++f)
+                maps_.back().push_back(body.clip.frame(f));
+        }
+    }
+
     std::string name;
     std::vector<Input> bodies;
 
-    std::size_t frames() const { return bodies[0].clip.frames.size(); }
-    std::span<const AffineMap> maps(std::size_t body, std::size_t frame) const { return bodies[body].clip.frames[frame]; }
+    std::size_t frames() const { return bodies[0].clip.frame_count(); }
+    std::span<const AffineMap> maps(std::size_t body, std::size_t frame) const { return maps_[body][frame]; }
+
+private:
+    std::vector<std::vector<Clip::Frame>> maps_; ///< by body and frame
 };
 
 /// A way of finding the intersecting pairs of triangles of a scene. The three steps of a frame are timed one by one.

@@ -115,7 +115,7 @@ void print_tables(const Input& input, const CostSample& sample, const std::vecto
 {
     for (const std::string& line : input.report)
         fmt::print("{}\n", line);
-    fmt::print("one BV of each of {} levels, last frame; one core\n", sample.bvs.size());
+    fmt::print("one BV of each of {} levels, last frame; one core{}\n", sample.bvs.size(), partial_mark(input.missing));
     for (std::size_t first = 0; first < rows.size();) {
         const int kdop = rows[first].kdop;
         std::vector<std::vector<std::string>> lines;
@@ -151,13 +151,15 @@ int cost(const CostOptions& options)
     const Provenance from = provenance(1, options.input.seed);
     RecordOutput output(options.output, from);
     const Input input = load_input(options.input);
+    output.describe(fields_of(input));
     std::vector<std::string> others; // of which the gap is measured too
     if (options.all_scenes)
         for (const char* shape : {"brain", "santa", "fish"})
             if (input.name != shape)
                 others.emplace_back(shape);
     const Bvh bvh = build_bvh(input.surface, options.leaf);
-    CostSample sample{input.surface, bvh, input.clip.frames.back(), {}};
+    const Clip::Frame last = input.clip.frame(input.clip.frame_count() - 1);
+    CostSample sample{input.surface, bvh, last, {}};
     for (std::size_t l = 0; l + 1 < bvh.level.size(); ++l)
         sample.bvs.push_back((bvh.level[l] + bvh.level[l + 1]) / 2);
     catch_interrupt();

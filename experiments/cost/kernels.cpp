@@ -65,8 +65,9 @@ std::vector<DualGap> dual_gaps(const Input& input, std::size_t leaf)
             throw_if_interrupted();
             refits.emplace_back(bvh, input.surface, RefitOptions{method, 6, Rounding::plain, Precision::float64, passes});
         }
-        for (const auto& maps : input.clip.frames) {
+        for (std::size_t f = 0; f < input.clip.frame_count(); ++f) {
             throw_if_interrupted();
+            const Clip::Frame maps = input.clip.frame(f);
             optimum(maps, best);
             for (int passes = 0; passes < 5; ++passes) {
                 throw_if_interrupted();
@@ -91,7 +92,7 @@ std::vector<DualGap> dual_gaps(const Input& input, std::size_t leaf)
                 continue;
             for (double& g : gap.gap)
                 g /= static_cast<double>(gap.bounds);
-            gap.frames = input.clip.frames.size();
+            gap.frames = input.clip.frame_count();
             gaps.push_back(gap);
         }
     }

@@ -97,9 +97,12 @@ RecordOutput::RecordOutput(const OutputOptions& options, const Provenance& from)
     }
 }
 
+void RecordOutput::describe(const Json& input) { input_.update(input); }
+
 void RecordOutput::add(const Json& record)
 {
     Json line = record;
+    line.update(input_);
     for (const auto& [name, value] : {std::pair("frames_done", Json(completeness_.frames_done)), std::pair("frames", Json(completeness_.frames)), std::pair("complete", Json(completeness_.complete))})
         if (!line.contains(name))
             line[name] = value;

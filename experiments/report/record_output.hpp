@@ -43,6 +43,9 @@ public:
     RecordOutput(const OutputOptions& options, const Provenance& from);
     /// The completeness of the records added from here on; a record's own fields of these names go before. The last one is also that of charts and page.
     void set(Completeness completeness) { completeness_ = std::move(completeness); }
+    /// Fields of the input that every record carries from now on; "partial" and "missing" are among them in any case: false and none,
+    /// until this says otherwise.
+    void describe(const nlohmann::ordered_json& input);
     void add(const nlohmann::ordered_json& record);
     void add_all(const std::vector<nlohmann::ordered_json>& records);
     /// Writes what has not been printed yet. Without it charts and page stay as they were.
@@ -50,6 +53,7 @@ public:
 
 private:
     OutputOptions options_;
+    nlohmann::ordered_json input_{{"partial", false}, {"missing", nlohmann::ordered_json::array()}};
     nlohmann::ordered_json from_;
     Completeness completeness_;
     std::vector<nlohmann::ordered_json> records_;

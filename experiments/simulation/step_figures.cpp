@@ -68,7 +68,7 @@ void measure_evaluation(StepFigures& out, double seconds)
     centre_and_scale(surface.mesh, 1.2);
     const SimulationNodes nodes = sample_nodes(surface.mesh, 509, 0);
     surface.weights = kernel_weights(surface.mesh, nodes, 2);
-    const std::vector<AffineMap> maps = scripted_clip(*named_motion("strong"), nodes.position, 1).frames[0];
+    const std::vector<AffineMap> maps = scripted_clip(*named_motion("strong"), nodes.position, 1).frame(0);
     const SurfaceEvaluator<double> evaluate(surface);
     const SurfaceEvaluator<float> evaluate_float(surface);
     struct EigenMap {

@@ -28,7 +28,8 @@ StabilityState twisted_box(std::size_t nodes, const Vec3& offset = Vec3::Zero(),
     StabilityState state{{box({2, 1, 0.8}, {6, 4, 4}), {}}, {}};
     const SimulationNodes sampled = sample_nodes(state.surface.mesh, nodes, 1);
     state.surface.weights = kernel_weights(state.surface.mesh, sampled, 2);
-    state.frames = scripted_clip(*named_motion("strong"), sampled.position, 2).frames;
+    const Clip clip = scripted_clip(*named_motion("strong"), sampled.position, 2);
+    state.frames = {clip.frame(0), clip.frame(1)};
     for (Vec3& v : state.surface.mesh.vertices)
         v = scale * v + offset;
     for (auto& frame : state.frames)
@@ -229,7 +230,8 @@ StabilityOutcome flat_boxes(Missing)
     StabilityState state{{box({1, 1, 0}, {5, 5, 1}), {}}, {}};
     const std::vector<Vec3> nodes = lattice({1, 1, 0}, 3, 3, 1);
     state.surface.weights = kernel_weights(state.surface.mesh, {nodes, 0.4}, 2);
-    state.frames = scripted_clip(*named_motion("strong"), nodes, 2).frames;
+    const Clip clip = scripted_clip(*named_motion("strong"), nodes, 2);
+    state.frames = {clip.frame(0), clip.frame(1)};
     const Bvh bvh = build_bvh(state.surface, 1);
     const double half = bvh.bvs[0].box.half[2];
     StabilityOutcome out = proven_only(std::move(state), fmt::format("half-extent {}", half));

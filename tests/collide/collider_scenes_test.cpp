@@ -255,7 +255,7 @@ TEST_CASE("characters that dance through each other: pairs of brute force")
     for (std::size_t f = 0; f < 20; ++f) {
         std::vector<Maps> maps;
         for (std::size_t b = 0; b < 4; ++b) {
-            maps.push_back(clips[b].frames[3 * f % clips[b].frames.size()]);
+            maps.push_back(clips[b].frame(3 * f % clips[b].frame_count()));
             for (AffineMap& map : maps.back()) // all as large as the man
                 for (auto& row : map.m)
                     for (double& x : row)

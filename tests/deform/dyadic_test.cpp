@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cmath>
 
+#include <cmath>
+#include <cstdio>
+#include <random>
+
 #include <catch2/catch.hpp>
 #include <rapidcheck/catch.h>
 
@@ -91,8 +95,59 @@ TEST_CASE("a file's weights are normalised, rows without weight bound, and both 
     CHECK(weights.row == std::vector<std::uint32_t>{0, 2, 3, 4}); // 1e-30 rounds to 0 and is dropped
     CHECK(weights.weight == std::vector<double>{0.5, 0.5, 1, 1});
     CHECK(report.vertices == 3);
-    CHECK(report.off_by_a_thousandth == 2);
+    CHECK(report.normalised == 1);
+    CHECK(report.largest_change == Approx(4)); // from 0.1 to 0.5
     CHECK(report.without_weight == 1);
-    CHECK(report.least_sum == 0);
+    CHECK(report.least_sum == 0.2);
     CHECK(report.greatest_sum == 1);
+}
+
+TEST_CASE("normalising is reported where it changes weights by more than rounding, with the largest change")
+{
+    std::mt19937_64 random(5);
+    auto uniform = [&](double low, double high) { return std::uniform_real_distribution<>(low, high)(random); };
+    for (std::size_t i = 0; i < 2000; ++i) {
+        const std::size_t n = 1 + random() % 12;
+        Influences one;
+        one.node_count = 12;
+        const int kind = static_cast<int>(i % 3); // stored as binary32, printed with 9 digits, as bytes
+        std::vector<float> raw;
+        float sum = 0;
+        for (std::size_t j = 0; j < n; ++j) {
+            raw.push_back(static_cast<float>(uniform(0.001, 1)));
+            sum += raw.back();
+        }
+        if (kind == 2) {
+            one.step = 1.0 / 255;
+            int left = 255;
+            for (std::size_t j = 0; j < n; ++j) {
+                const int part = j + 1 == n ? left : static_cast<int>(random() % static_cast<std::uint64_t>(left / 2 + 1));
+                left -= part;
+                one.weight.push_back(part / 255.0);
+            }
+        } else {
+            for (const float w : raw)
+                one.weight.push_back(kind == 0 ? static_cast<double>(w / sum) : std::stod([&] {
+                    char text[32];
+                    std::snprintf(text, sizeof text, "%.9g", static_cast<double>(w / sum));
+                    return std::string(text);
+                }()));
+        }
+        for (std::size_t j = 0; j < n; ++j)
+            one.node.push_back(static_cast<std::uint32_t>(j));
+        one.row.push_back(static_cast<std::uint32_t>(n));
+        WeightReport report;
+        to_dyadic(one, &report);
+        CHECK(report.normalised == 0);
+        CHECK(report.largest_change == 0);
+
+        const double scale = uniform(0, 1) < 0.5 ? 1 + std::exp(uniform(std::log(2e-6), std::log(9.0))) : 1 - std::exp(uniform(std::log(2e-6), std::log(0.9))); // from far below 0.001
+        for (double& w : one.weight)
+            w *= scale;
+        to_dyadic(one, &report);
+        INFO(scale << " of " << n);
+        CHECK(report.normalised == 1);
+        CHECK(report.largest_change == Approx(std::abs(1 / scale - 1)).epsilon(0.5).margin(2 * sum_rounding(n)));
+        CHECK((report.beyond_steps == 1) == (std::abs(scale - 1) > sum_rounding(n) + 0.5 * one.step * static_cast<double>(n)));
+    }
 }

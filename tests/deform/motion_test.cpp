@@ -58,12 +58,12 @@ TEST_CASE("frames grow from rest to the full motion")
     const std::vector<Vec3> nodes{{0.1, 0.2, 0.3}, {-1, 0.5, 0}};
     const Motion strong = *named_motion("strong");
     const Clip clip = scripted_clip(strong, nodes, 4);
-    REQUIRE(clip.frames.size() == 4);
+    REQUIRE(clip.frame_count() == 4);
     for (std::size_t j = 0; j < nodes.size(); ++j)
         for (int r = 0; r < 3; ++r)
             for (int c = 0; c < 4; ++c) {
-                CHECK(clip.frames[0][j].m[r][c] == identity_map.m[r][c]);
-                CHECK(clip.frames[3][j].m[r][c] == linearise(strong, nodes[j]).m[r][c]);
+                CHECK(clip.frame(0)[j].m[r][c] == identity_map.m[r][c]);
+                CHECK(clip.frame(3)[j].m[r][c] == linearise(strong, nodes[j]).m[r][c]);
             }
-    CHECK(scripted_clip(strong, nodes, 1).frames[0][0].m[0][0] == linearise(strong, nodes[0]).m[0][0]);
+    CHECK(scripted_clip(strong, nodes, 1).frame(0)[0].m[0][0] == linearise(strong, nodes[0]).m[0][0]);
 }

@@ -20,8 +20,10 @@ TEST_CASE("clips as text load")
     const std::vector<Clip> clips = parse_clips_text("1\nwalk 2 1\n0 1 0 0 0 0 1 0 0 0 0 1 0\n0.5 1 0 0 7 0 1 0 0 0 0 1 0\n", "t", 1);
     REQUIRE(clips.size() == 1);
     CHECK(clips[0].name == "walk");
-    CHECK(clips[0].time_s == std::vector<double>{0, 0.5});
-    CHECK(clips[0].frames[1][0].m[0][3] == 7);
+    REQUIRE(clips[0].frame_count() == 2);
+    CHECK(clips[0].time_s(0) == 0);
+    CHECK(clips[0].time_s(1) == 0.5);
+    CHECK(clips[0].frame(1)[0].m[0][3] == 7);
 }
 
 TEST_CASE("bad weights and clips are refused with the line")

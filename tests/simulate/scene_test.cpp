@@ -188,12 +188,12 @@ TEST_CASE("frames are read back as they were written, and damage is seen")
     }
     const FrameFile all = read_frames(folder.write("a", bytes));
     REQUIRE(all.bodies.size() == 2);
-    REQUIRE(all.bodies[0].frames.size() == 3);
-    CHECK(all.bodies[0].frames[2][1].m[2][3] == 1.0 / 3);
+    REQUIRE(all.bodies[0].frame_count() == 3);
+    CHECK(all.bodies[0].frame(2)[1].m[2][3] == 1.0 / 3);
     CHECK(all.bodies[1].time_s[2] == 0.5);
     CHECK_FALSE(all.cut_off);
     const FrameFile cut = read_frames(folder.write("b", std::string_view(bytes).substr(0, bytes.size() - 1)));
-    CHECK(cut.bodies[0].frames.size() == 2);
+    CHECK(cut.bodies[0].frame_count() == 2);
     CHECK(cut.cut_off);
     bytes[layout.header_bytes() + 100] ^= 1;
     CHECK_THROWS_WITH(read_frames(folder.write("c", bytes)), Catch::Contains("frame 0 was changed"));

@@ -2,6 +2,7 @@
 #include "toolkit/deform/motion.hpp"
 
 #include <cmath>
+#include <memory>
 
 #include <Eigen/Geometry>
 
@@ -99,19 +100,17 @@ AffineMap linearise(const Motion& motion, const Vec3& p)
 
 Clip scripted_clip(const Motion& motion, std::span<const Vec3> nodes, std::size_t frames)
 {
-    Clip clip;
-    clip.name = "scripted";
-    for (std::size_t f = 0; f < frames; ++f) {
-        const double s = frames == 1 ? 1.0 : static_cast<double>(f) / static_cast<double>(frames - 1);
+    auto share = [frames](std::size_t f) { return frames == 1 ? 1.0 : static_cast<double>(f) / static_cast<double>(frames - 1); };
+    auto frame = [motion, share, places = std::make_shared<const std::vector<Vec3>>(nodes.begin(), nodes.end())](std::size_t f) {
+        const double s = share(f);
         const Motion now{s * motion.twist, s * motion.bend, s * motion.pull, s * motion.rotate};
-        clip.time_s.push_back(s);
-        std::vector<AffineMap> maps;
-        maps.reserve(nodes.size());
-        for (const Vec3& p : nodes)
+        Clip::Frame maps;
+        maps.reserve(places->size());
+        for (const Vec3& p : *places)
             maps.push_back(linearise(now, p));
-        clip.frames.push_back(std::move(maps));
-    }
-    return clip;
+        return maps;
+    };
+    return {"scripted", frames, share, frame};
 }
 
 } // namespace cinch

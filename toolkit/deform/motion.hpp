@@ -24,7 +24,8 @@ inline constexpr std::string_view motion_names = "strong, mild, twist, bend, pul
 /// Value and Jacobian of the motion at p as the affine map x ↦ J (x − p) + value: the T_j of a simulation node at p.
 AffineMap linearise(const Motion& motion, const Vec3& p);
 
-/// `frames` ≥ 1 frames growing linearly from rest to the full motion in the last; a single frame has the full motion.
+/// `frames` ≥ 1 frames growing linearly from rest to the full motion in the last; a single frame has the full motion. Time runs
+/// from 0 to 1 s.
 Clip scripted_clip(const Motion& motion, std::span<const Vec3> nodes, std::size_t frames);
 
 } // namespace cinch

@@ -82,23 +82,26 @@ FrameFile read_frames(const std::filesystem::path& path)
         throw InputError::in_file(file, "ends within its header");
     for (std::uint32_t b = 0; b < bodies; ++b)
         frames.layout.nodes.push_back(get<std::uint32_t>(bytes, place));
-    frames.bodies.resize(bodies);
+    std::vector<double> times;
+    std::vector<std::vector<Clip::Frame>> maps_of(bodies);
     const std::size_t size = frames.layout.frame_bytes();
     for (std::uint64_t frame = 0; bytes.size() - place >= size; ++frame) {
         const std::size_t start = place;
         const auto number = get<std::uint64_t>(bytes, place);
         const auto time_s = get<double>(bytes, place);
         for (std::uint32_t b = 0; b < bodies; ++b) {
-            std::vector<AffineMap> maps(frames.layout.nodes[b]);
+            Clip::Frame maps(frames.layout.nodes[b]);
             std::memcpy(maps.data(), bytes.data() + place, 96 * maps.size());
             place += 96 * maps.size();
-            frames.bodies[b].frames.push_back(std::move(maps));
-            frames.bodies[b].time_s.push_back(time_s);
+            maps_of[b].push_back(std::move(maps));
         }
+        times.push_back(time_s);
         const std::string_view record(bytes.data() + start, place - start);
         if (get<std::uint64_t>(bytes, place) != checksum(record) || number != frame)
             throw InputError::at_byte(file, start, "frame " + std::to_string(frame) + " was changed");
     }
+    for (auto& maps : maps_of)
+        frames.bodies.emplace_back("simulated", times, std::move(maps));
     frames.cut_off = place != bytes.size();
     return frames;
 }

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <numeric>
+#include <optional>
 
 #include "toolkit/deform/sample_nodes.hpp"
 #include "toolkit/surface/character.hpp"
@@ -25,34 +27,63 @@ std::size_t nearest(std::span<const Vec3> places, const Vec3& p)
     return best;
 }
 
-// A point moves as the surface's nearest vertex does: by that vertex's blend of joint maps, between two samples of the clip.
-struct SkinPath {
-    Clip clip;
-    Weights skin;
-    std::vector<Vec3> point;
-    std::vector<std::uint32_t> vertex;
+// A point moves as the surface's nearest vertex does: by that vertex's blend of joint maps, between two frames of the clip. The places in
+// the two frames around the time asked for last are kept.
+class SkinPath {
+public:
+    SkinPath(Clip clip, Weights skin, std::vector<Vec3> points, std::vector<std::uint32_t> vertices)
+        : clip_(std::move(clip)), skin_(std::move(skin)), point_(std::move(points)), vertex_(std::move(vertices))
+    {
+    }
 
-    Vec3 at_sample(std::size_t node, std::size_t frame) const
+    Vec3 operator()(std::size_t node, double time_s)
     {
-        Vec3 sum = Vec3::Zero();
-        const Weights::Row row = skin.of(vertex[node]);
-        for (std::size_t e = 0; e < row.node.size(); ++e) {
-            const auto& m = clip.frames[frame][row.node[e]].m;
-            for (int r = 0; r < 3; ++r)
-                sum[r] += row.weight[e] * (m[r][0] * point[node][0] + m[r][1] * point[node][1] + m[r][2] * point[node][2] + m[r][3]);
+        const std::scoped_lock lock(mutex_);
+        const double now = clip_.time_s(0) + time_s;
+        std::size_t above = 0; // the first frame after now
+        for (std::size_t last = clip_.frame_count(); above < last;) {
+            const std::size_t middle = above + (last - above) / 2;
+            if (clip_.time_s(middle) > now)
+                last = middle;
+            else
+                above = middle + 1;
         }
-        return sum;
+        if (above == 0 || above >= clip_.frame_count())
+            return in_frame(above == 0 ? 0 : clip_.frame_count() - 1)[node];
+        const double before = clip_.time_s(above - 1), s = (now - before) / (clip_.time_s(above) - before);
+        return (1 - s) * in_frame(above - 1)[node] + s * in_frame(above)[node];
     }
-    Vec3 operator()(std::size_t node, double time_s) const
+
+private:
+    const std::vector<Vec3>& in_frame(std::size_t frame)
     {
-        const std::vector<double>& t = clip.time_s;
-        const double now = t.front() + time_s;
-        const auto above = static_cast<std::size_t>(std::upper_bound(t.begin(), t.end(), now) - t.begin());
-        if (above == 0 || above >= t.size())
-            return at_sample(node, above == 0 ? 0 : t.size() - 1);
-        const double s = (now - t[above - 1]) / (t[above] - t[above - 1]);
-        return (1 - s) * at_sample(node, above - 1) + s * at_sample(node, above);
+        Kept& kept = kept_[frame % 2];
+        if (kept.frame == frame)
+            return kept.place;
+        const Clip::Frame maps = clip_.frame(frame);
+        kept.place.assign(point_.size(), Vec3::Zero());
+        for (std::size_t i = 0; i < point_.size(); ++i) {
+            const Weights::Row row = skin_.of(vertex_[i]);
+            for (std::size_t e = 0; e < row.node.size(); ++e) {
+                const auto& m = maps[row.node[e]].m;
+                for (int r = 0; r < 3; ++r)
+                    kept.place[i][r] += row.weight[e] * (m[r][0] * point_[i][0] + m[r][1] * point_[i][1] + m[r][2] * point_[i][2] + m[r][3]);
+            }
+        }
+        kept.frame = frame;
+        return kept.place;
     }
+
+    struct Kept {
+        std::optional<std::size_t> frame;
+        std::vector<Vec3> place;
+    };
+    Clip clip_;
+    Weights skin_;
+    std::vector<Vec3> point_;
+    std::vector<std::uint32_t> vertex_;
+    Kept kept_[2];
+    std::mutex mutex_;
 };
 
 bool is_character(const std::string& name) { return name.ends_with(".glb") || name.ends_with(".gltf"); }
@@ -112,6 +143,8 @@ LoadedBody load_body(const SceneBody& body, const std::string& file, MeshCache& 
             complain(file, body, "size", "a character keeps its own size");
         try {
             character = read_gltf(body.surface);
+            if (character->animations.empty())
+                rest_pose(*character); // says what is missing in it
         } catch (const InputError& error) {
             complain(file, body, "surface", error.what());
         }
@@ -171,12 +204,16 @@ LoadedBody load_body(const SceneBody& body, const std::string& file, MeshCache& 
         }
         if (!chosen)
             complain(file, body, "clip", body.surface + " has no clip '" + body.clip + "'; it has " + known);
-        auto path = std::make_shared<SkinPath>();
-        path->clip = sample(*character, *chosen, 60);
-        path->skin = to_dyadic(character->influences);
-        path->point = loaded.nodes;
+        std::vector<std::uint32_t> followed;
         for (const Vec3& p : loaded.nodes)
-            path->vertex.push_back(static_cast<std::uint32_t>(nearest(mesh.vertices, p)));
+            followed.push_back(static_cast<std::uint32_t>(nearest(mesh.vertices, p)));
+        std::optional<Clip> clip;
+        try {
+            clip = sample(*character, *chosen, 60);
+        } catch (const InputError& error) {
+            complain(file, body, "clip", error.what());
+        }
+        auto path = std::make_shared<SkinPath>(std::move(*clip), to_dyadic(character->influences), loaded.nodes, std::move(followed));
         loaded.clip = [path](std::size_t node, double time_s) { return (*path)(node, time_s); };
     } else if (!body.clip.empty()) {
         complain(file, body, "clip", "only an animated character has clips");

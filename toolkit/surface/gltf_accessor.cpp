@@ -5,125 +5,156 @@
 #include <cmath>
 #include <cstring>
 
-#include "toolkit/surface/input_error.hpp"
+#include "toolkit/surface/text_scan.hpp"
 
 namespace cinch {
 namespace {
 
+enum class Component { int8 = 5120, uint8 = 5121, int16 = 5122, uint16 = 5123, uint32 = 5125, float32 = 5126 };
+
+std::size_t bytes_of(Component type)
+{
+    return type == Component::int8 || type == Component::uint8 ? 1 : type == Component::int16 || type == Component::uint16 ? 2 : 4;
+}
+
+// What 1 is stored as; 0 for types that are not normalised.
+double one_of(Component type)
+{
+    switch (type) {
+    case Component::int8: return 127;
+    case Component::uint8: return 255;
+    case Component::int16: return 32767;
+    case Component::uint16: return 65535;
+    default: return 0;
+    }
+}
+
+Component component_of(const GltfValue& holder)
+{
+    const GltfValue value = holder["componentType"];
+    const std::size_t type = value.index();
+    if (type < 5120 || type > 5126 || type == 5124)
+        value.fail("is " + std::to_string(type) + ", which is no component type of glTF 2.0");
+    return static_cast<Component>(type);
+}
+
+std::size_t components_of(const GltfValue& accessor)
+{
+    const std::string& type = accessor["type"].text();
+    for (const auto& [name, count] : {std::pair("SCALAR", 1), {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT2", 4}, {"MAT3", 9}, {"MAT4", 16}})
+        if (type == name)
+            return static_cast<std::size_t>(count);
+    accessor.fail("has the unknown type '" + printable(type) + "'");
+}
+
+template <class T> double load(const char* at)
+{
+    T value;
+    std::memcpy(&value, at, sizeof value);
+    return static_cast<double>(value);
+}
+
+double component(const char* at, Component type)
+{
+    switch (type) {
+    case Component::int8: return load<std::int8_t>(at);
+    case Component::uint8: return load<std::uint8_t>(at);
+    case Component::int16: return load<std::int16_t>(at);
+    case Component::uint16: return load<std::uint16_t>(at);
+    case Component::uint32: return load<std::uint32_t>(at);
+    case Component::float32: return load<float>(at);
+    }
+    return 0;
+}
+
 class AccessorReader {
 public:
-    AccessorReader(const tinygltf::Model& model, int index, const std::string& file)
-        : model_(model), file_(file), name_("accessor " + std::to_string(index))
+    AccessorReader(GltfDocument& document, std::size_t index, Missing& missing)
+        : document_(document), missing_(missing), accessor_(document.at("accessors", index))
     {
-        if (index < 0 || static_cast<std::size_t>(index) >= model.accessors.size())
-            fail("does not exist");
-        accessor_ = &model.accessors[static_cast<std::size_t>(index)];
     }
 
     std::vector<double> read(std::size_t components)
     {
-        const int count = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor_->type));
-        if (count <= 0 || static_cast<std::size_t>(count) != components)
-            fail("has " + std::to_string(count) + " components, expected " + std::to_string(components));
-        std::size_t total_bytes = 0;
-        for (const auto& buffer : model_.buffers)
-            total_bytes += buffer.data.size();
-        if (accessor_->count > total_bytes)
-            fail("declares " + std::to_string(accessor_->count) + " elements, more than the file's buffers have bytes");
-        std::vector<double> out(accessor_->count * components, 0.0);
-        if (accessor_->bufferView >= 0)
-            copy(accessor_->bufferView, accessor_->byteOffset, accessor_->componentType, accessor_->normalized, components, true, out);
-        else if (!accessor_->sparse.isSparse && accessor_->count > 0)
-            fail("has no data (no buffer view)");
-        if (accessor_->sparse.isSparse)
-            substitute(components, out);
+        note_extensions(accessor_, missing_);
+        if (const std::size_t found = components_of(accessor_); found != components)
+            accessor_.fail("has " + std::to_string(found) + " components, expected " + std::to_string(components));
+        const std::size_t count = accessor_["count"].index();
+        if (count > document_.bytes())
+            accessor_.fail("declares " + std::to_string(count) + " elements, more than the file's buffers have bytes");
+        std::vector<double> out(count * components, 0.0); // what a file gives no data for is zero
+        const Component type = component_of(accessor_);
+        if (const auto view = accessor_.index_of("bufferView"))
+            copy(*view, accessor_.index_or("byteOffset", 0), type, normalized(), components, true, out);
+        if (const auto sparse = accessor_.find("sparse"))
+            substitute(*sparse, type, components, out);
         return out;
     }
 
 private:
-    [[noreturn]] void fail(const std::string& reason) const { throw InputError::in_file(file_, name_ + " " + reason); }
+    bool normalized() const { return accessor_.truth_or("normalized", false); }
 
-    void substitute(std::size_t components, std::vector<double>& out) const
+    void substitute(const GltfValue& sparse, Component type, std::size_t components, std::vector<double>& out)
     {
-        const auto& sparse = accessor_->sparse;
-        if (sparse.count < 0 || static_cast<std::size_t>(sparse.count) > accessor_->count || sparse.indices.byteOffset < 0 ||
-            sparse.values.byteOffset < 0)
-            fail("has a sparse part that does not fit it");
-        const auto count = static_cast<std::size_t>(sparse.count);
-        std::vector<double> at(count), values(count * components);
-        copy(sparse.indices.bufferView, static_cast<std::size_t>(sparse.indices.byteOffset), sparse.indices.componentType, false, 1, false, at);
-        copy(sparse.values.bufferView, static_cast<std::size_t>(sparse.values.byteOffset), accessor_->componentType, accessor_->normalized,
-             components, false, values);
+        const GltfValue indices = sparse["indices"], values = sparse["values"];
+        for (const GltfValue& part : {sparse, indices, values})
+            note_extensions(part, missing_);
+        const std::size_t count = sparse["count"].index(), all = out.size() / components;
+        if (count > all)
+            accessor_.fail("has a sparse part of " + std::to_string(count) + " elements, more than the " + std::to_string(all) + " it has");
+        std::vector<double> at(count), value(count * components);
+        copy(indices["bufferView"].index(), indices.index_or("byteOffset", 0), component_of(indices), false, 1, false, at);
+        copy(values["bufferView"].index(), values.index_or("byteOffset", 0), type, normalized(), components, false, value);
         for (std::size_t i = 0; i < count; ++i) {
-            if (!(at[i] >= 0 && at[i] < static_cast<double>(accessor_->count)))
-                fail("has a sparse index out of range");
-            std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(i * components), components,
+            if (!(at[i] >= 0 && at[i] < static_cast<double>(all)))
+                accessor_.fail("has a sparse index out of range");
+            std::copy_n(value.begin() + static_cast<std::ptrdiff_t>(i * components), components,
                         out.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(at[i]) * components));
         }
     }
 
     // out.size() / components elements from a buffer view.
-    void copy(int view_index, std::size_t offset, int type, bool normalized, std::size_t components, bool strided, std::vector<double>& out) const
+    void copy(std::size_t view_index, std::size_t offset, Component type, bool normalized, std::size_t components, bool strided, std::vector<double>& out)
     {
-        if (view_index < 0 || static_cast<std::size_t>(view_index) >= model_.bufferViews.size())
-            fail("refers to buffer view " + std::to_string(view_index) + ", which does not exist");
-        const auto& view = model_.bufferViews[static_cast<std::size_t>(view_index)];
-        if (view.buffer < 0 || static_cast<std::size_t>(view.buffer) >= model_.buffers.size())
-            fail("refers to buffer " + std::to_string(view.buffer) + ", which does not exist");
-        const auto& data = model_.buffers[static_cast<std::size_t>(view.buffer)].data;
-        const int bytes = tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(type));
-        if (bytes <= 0)
-            fail("has an unknown component type " + std::to_string(type));
-        const std::size_t size = static_cast<std::size_t>(bytes), element = size * components;
-        const std::size_t stride = strided && view.byteStride > 0 ? view.byteStride : element;
-        const std::size_t count = out.size() / components;
-        if (view.byteOffset > data.size() || view.byteLength > data.size() - view.byteOffset)
-            fail("lies in a buffer view that reaches past its buffer");
-        if (count > 0 && (stride > view.byteLength || offset > view.byteLength || element > view.byteLength - offset ||
-                          (count - 1) > (view.byteLength - offset - element) / stride))
-            fail("reaches past its buffer view");
-        const unsigned char* first = data.data() + view.byteOffset + offset;
+        const GltfValue view = document_.at("bufferViews", view_index);
+        note_extensions(view, missing_);
+        const std::size_t buffer = view["buffer"].index();
+        note_extensions(document_.at("buffers", buffer), missing_);
+        const std::string& data = document_.buffer(buffer);
+        const std::size_t begin = view.index_or("byteOffset", 0), length = view["byteLength"].index();
+        const std::size_t size = bytes_of(type), element = size * components, count = out.size() / components;
+        const std::size_t declared = view.index_or("byteStride", 0), stride = strided && declared > 0 ? declared : element;
+        if (begin > data.size() || length > data.size() - begin)
+            accessor_.fail("lies in " + view.place() + ", which reaches past its buffer");
+        if (count > 0 && (offset > length || element > length - offset || (count - 1) > (length - offset - element) / stride))
+            accessor_.fail("reaches past " + view.place());
+        const double one = normalized ? one_of(type) : 0;
         for (std::size_t i = 0; i < count; ++i)
-            for (std::size_t c = 0; c < components; ++c)
-                out[i * components + c] = component(first + i * stride + c * size, type, normalized);
+            for (std::size_t c = 0; c < components; ++c) {
+                const double x = component(data.data() + begin + offset + i * stride + c * size, type);
+                if (!std::isfinite(x))
+                    accessor_.fail("holds a number that is not finite");
+                out[i * components + c] = one > 0 ? std::max(x / one, -1.0) : x;
+            }
     }
 
-    template <class T> static double load(const unsigned char* at)
-    {
-        T value;
-        std::memcpy(&value, at, sizeof value);
-        return static_cast<double>(value);
-    }
-
-    double component(const unsigned char* at, int type, bool normalized) const
-    {
-        switch (type) {
-        case TINYGLTF_COMPONENT_TYPE_BYTE: return normalized ? std::max(load<std::int8_t>(at) / 127, -1.0) : load<std::int8_t>(at);
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return normalized ? load<std::uint8_t>(at) / 255 : load<std::uint8_t>(at);
-        case TINYGLTF_COMPONENT_TYPE_SHORT: return normalized ? std::max(load<std::int16_t>(at) / 32767, -1.0) : load<std::int16_t>(at);
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return normalized ? load<std::uint16_t>(at) / 65535 : load<std::uint16_t>(at);
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return load<std::uint32_t>(at);
-        case TINYGLTF_COMPONENT_TYPE_FLOAT: {
-            const double value = load<float>(at);
-            if (!std::isfinite(value))
-                fail("holds a number that is not finite");
-            return value;
-        }
-        default: fail("has an unsupported component type " + std::to_string(type));
-        }
-    }
-
-    const tinygltf::Model& model_;
-    const std::string& file_;
-    std::string name_;
-    const tinygltf::Accessor* accessor_ = nullptr;
+    GltfDocument& document_;
+    Missing& missing_;
+    GltfValue accessor_;
 };
 
 } // namespace
 
-std::vector<double> read_accessor(const tinygltf::Model& model, int index, std::size_t components, const std::string& file)
+std::vector<double> read_accessor(GltfDocument& document, std::size_t index, std::size_t components, Missing& missing)
 {
-    return AccessorReader(model, index, file).read(components);
+    return AccessorReader(document, index, missing).read(components);
+}
+
+double step_of_accessor(const GltfDocument& document, std::size_t index)
+{
+    const GltfValue accessor = document.at("accessors", index);
+    const double one = accessor.truth_or("normalized", false) ? one_of(component_of(accessor)) : 0;
+    return one > 0 ? 1 / one : 0;
 }
 
 } // namespace cinch

@@ -65,13 +65,14 @@ std::vector<Clip> parse_clips_text(std::string_view bytes, const std::string& fi
     const std::size_t clips = count_between(scan, "the number of clips", 1);
     std::vector<Clip> out;
     for (std::size_t c = 0; c < clips; ++c) {
-        Clip clip;
-        clip.name = scan.word_across_lines("the name of a clip");
+        const std::string name(scan.word_across_lines("the name of a clip"));
+        std::vector<double> time_s;
+        std::vector<Clip::Frame> all;
         const std::size_t frames = count_between(scan, "the number of frames", 1);
         expect_count(scan, count_between(scan, "the number of nodes", 1), nodes, "nodes", "weights have");
         for (std::size_t f = 0; f < frames; ++f) {
-            clip.time_s.push_back(scan.number(scan.word_across_lines("a time"), "a time"));
-            std::vector<AffineMap> frame;
+            time_s.push_back(scan.number(scan.word_across_lines("a time"), "a time"));
+            Clip::Frame frame;
             for (std::uint32_t j = 0; j < nodes; ++j) {
                 AffineMap map;
                 for (auto& row : map.m)
@@ -79,9 +80,9 @@ std::vector<Clip> parse_clips_text(std::string_view bytes, const std::string& fi
                         x = scan.number(scan.word_across_lines("a matrix entry"), "a matrix entry");
                 frame.push_back(map);
             }
-            clip.frames.push_back(std::move(frame));
+            all.push_back(std::move(frame));
         }
-        out.push_back(std::move(clip));
+        out.emplace_back(name, std::move(time_s), std::move(all));
     }
     if (scan.next_line())
         scan.fail("more lines than the " + std::to_string(clips) + " clips declared");

@@ -2,6 +2,7 @@
 // Key-frame interpolation of the glTF 2.0 specification (appendix C) and joint matrices.
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "toolkit/surface/character.hpp"
 #include "toolkit/surface/input_error.hpp"
@@ -72,74 +73,81 @@ Matrix4 local_matrix(const Bone& bone)
 void apply(const Curve& curve, double t, Bone& bone)
 {
     const Quad value = evaluate(curve, t);
-    bone.is_matrix = false; // the specification forbids animating a matrix; TRS wins where a file does
+    bone.is_matrix = false; // it was taken apart when the file was read
     if (curve.target == Curve::Target::rotation)
         bone.rotation = value;
     else
         std::copy_n(value.begin(), 3, (curve.target == Curve::Target::scale ? bone.scale : bone.translation).begin());
 }
 
-std::vector<AffineMap> joint_matrices(const Character& character, const std::vector<Bone>& bones)
-{
-    std::vector<Matrix4, Eigen::aligned_allocator<Matrix4>> world;
-    world.reserve(bones.size());
-    for (const Bone& bone : bones) { // parents come first
-        const Matrix4 local = local_matrix(bone);
-        world.push_back(bone.parent < 0 ? local : world[static_cast<std::size_t>(bone.parent)] * local);
+// What a frame is made from.
+struct Motion {
+    std::string file, name;
+    std::vector<Bone> bones;
+    std::vector<Joint> joints;
+    std::vector<Curve> curves;
+    double first, last;
+    std::size_t steps; // from the first frame to the last
+
+    double time_s(std::size_t i) const { return i == steps ? last : first + (last - first) * static_cast<double>(i) / static_cast<double>(steps); }
+
+    Clip::Frame frame(double t) const
+    {
+        std::vector<Bone> now = bones;
+        for (const Curve& curve : curves)
+            apply(curve, t, now[curve.bone]);
+        std::vector<Matrix4, Eigen::aligned_allocator<Matrix4>> world;
+        world.reserve(now.size());
+        for (const Bone& bone : now) { // parents come first
+            const Matrix4 local = local_matrix(bone);
+            world.push_back(bone.parent < 0 ? local : world[static_cast<std::size_t>(bone.parent)] * local);
+        }
+        Clip::Frame maps;
+        maps.reserve(joints.size());
+        for (const Joint& joint : joints) {
+            Matrix4 bind = Matrix4::Identity();
+            for (int r = 0; r < 3; ++r)
+                for (int c = 0; c < 4; ++c)
+                    bind(r, c) = joint.inverse_bind.m[r][c];
+            const Matrix4 m = world[joint.bone] * bind;
+            AffineMap map;
+            for (int r = 0; r < 3; ++r)
+                for (int c = 0; c < 4; ++c) {
+                    if (!std::isfinite(m(r, c)))
+                        throw InputError::in_file(file, "clip '" + name + "' at " + std::to_string(t) + " s: the matrix of joint " + std::to_string(maps.size()) + " overflows");
+                    map.m[r][c] = m(r, c);
+                }
+            maps.push_back(map);
+        }
+        return maps;
     }
-    std::vector<AffineMap> maps;
-    maps.reserve(character.joints.size());
-    for (const Joint& joint : character.joints) {
-        Matrix4 bind = Matrix4::Identity();
-        for (int r = 0; r < 3; ++r)
-            for (int c = 0; c < 4; ++c)
-                bind(r, c) = joint.inverse_bind.m[r][c];
-        const Matrix4 m = world[joint.bone] * bind;
-        AffineMap map;
-        for (int r = 0; r < 3; ++r)
-            for (int c = 0; c < 4; ++c) {
-                if (!std::isfinite(m(r, c)))
-                    throw InputError("the matrix of joint " + std::to_string(maps.size()) + " overflows");
-                map.m[r][c] = m(r, c);
-            }
-        maps.push_back(map);
-    }
-    return maps;
-}
+};
 
 } // namespace
 
-Clip rest_pose(const Character& character)
-{
-    return {"rest", {0}, {joint_matrices(character, character.bones)}};
-}
+Clip rest_pose(const Character& character) { return sample(character, character.rest, 1); }
 
 Clip sample(const Character& character, const Character::Animation& animation, double fps)
 {
-    double first = 0, last = 0;
-    bool any = false;
-    for (const Curve& curve : animation.curves) {
-        first = any ? std::min(first, curve.time_s.front()) : curve.time_s.front();
-        last = any ? std::max(last, curve.time_s.back()) : curve.time_s.back();
-        any = true;
-    }
-    constexpr double most_frames = 1e6;
-    if (!((last - first) * fps < most_frames))
-        throw InputError("clip '" + animation.name + "' lasts " + std::to_string(last - first) +
-                         " s, over a million frames at this rate; lower the frames per second");
-    Clip clip;
-    clip.name = animation.name;
-    const auto steps = static_cast<std::size_t>(std::max(last > first ? 1.0 : 0.0, std::round((last - first) * fps)));
-    for (std::size_t i = 0; i < steps; ++i)
-        clip.time_s.push_back(first + (last - first) * static_cast<double>(i) / static_cast<double>(steps));
-    clip.time_s.push_back(last);
-    for (const double t : clip.time_s) {
-        std::vector<Bone> bones = character.bones;
-        for (const Curve& curve : animation.curves)
-            apply(curve, t, bones[curve.bone]);
-        clip.frames.push_back(joint_matrices(character, bones));
-    }
-    return clip;
+    if (!animation.fault.empty())
+        throw InputError(animation.fault);
+    const double length = animation.last_s - animation.first_s;
+    constexpr double most_frames = 1e12;
+    if (!(length * fps < most_frames - 1))
+        throw InputError::in_file(character.file, "clip '" + animation.name + "' lasts " + std::to_string(length) +
+                                                      " s, a million million frames at this rate; lower the frames per second");
+    const auto steps = static_cast<std::size_t>(std::max(length > 0 ? 1.0 : 0.0, std::round(length * fps)));
+    auto motion = std::make_shared<const Motion>(
+        Motion{character.file, animation.name, character.bones, character.joints, animation.curves, animation.first_s, animation.last_s, steps});
+    return {animation.name, steps + 1, [motion](std::size_t i) { return motion->time_s(i); }, [motion](std::size_t i) { return motion->frame(motion->time_s(i)); }};
+}
+
+std::string not_modelled(const std::vector<std::string>& missing)
+{
+    std::string out = "what is not modelled: ";
+    for (std::size_t i = 0; i < missing.size(); ++i)
+        out += (i ? "; " : "") + missing[i];
+    return out;
 }
 
 } // namespace cinch

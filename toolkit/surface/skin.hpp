@@ -8,24 +8,10 @@
 #include <string_view>
 #include <vector>
 
+#include "toolkit/surface/clip.hpp"
 #include "toolkit/surface/triangle_mesh.hpp"
 
 namespace cinch {
-
-/// x ↦ A x + t, row-major: A is m[r][0..2], t is m[r][3]. Applied to column vectors.
-struct AffineMap {
-    double m[3][4];
-};
-inline constexpr AffineMap identity_map{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
-
-inline bool is_finite(const AffineMap& map)
-{
-    for (const auto& row : map.m)
-        for (const double x : row)
-            if (!std::isfinite(x))
-                return false;
-    return true;
-}
 
 /// Weights of every vertex as a file gives them: not normalised. Vertex k owns entries [row[k], row[k+1]).
 struct Influences {
@@ -33,13 +19,7 @@ struct Influences {
     std::vector<std::uint32_t> row = {0};
     std::vector<std::uint32_t> node;     ///< ascending within a vertex, no node twice
     std::vector<double> weight;          ///< finite, ≥ 0
-};
-
-/// Sampled motion: frames[f][j] moves simulation node j; node counts agree across frames.
-struct Clip {
-    std::string name;
-    std::vector<double> time_s;
-    std::vector<std::vector<AffineMap>> frames;
+    double step = 0; ///< between neighbouring numbers where weights are stored as integers, 1/255 or 1/65535, the coarsest; 0: floating point
 };
 
 /// Text form of a skin's weights. First line `V J`; then per vertex `n j1 w1 ... jn wn` (node index from 0, weight ≥ 0,

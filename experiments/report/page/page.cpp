@@ -72,6 +72,18 @@ std::string views_of(const Results& results)
     return views.empty() ? "" : view_sections(views);
 }
 
+// A result that is not of all of a file's surface says so before all else.
+std::string partial_notice(const Results& results)
+{
+    std::vector<std::string> missing;
+    for (const Record& record : results.all())
+        if (const auto names = record.fields.find("missing"); record.fields.value("partial", false) && names != record.fields.end() && names->is_array())
+            for (const auto& name : *names)
+                if (name.is_string() && std::find(missing.begin(), missing.end(), name.get<std::string>()) == missing.end())
+                    missing.push_back(name.get<std::string>());
+    return missing.empty() ? "" : fmt::format("<p class=\"damage\"><strong>Partial</strong>, without {}</p>\n", escaped(fmt::format("{}", fmt::join(missing, "; "))));
+}
+
 const char* reading = "“Here” is what this program measured; “paper / here” is the published figure over ours, so that with times a ratio above 1 says how many times faster it is here. Every figure of "
                       "ours links to the line of results that it comes from, at the end of this page, with its command, seed, commit and machine. Grey italics are the paper’s own figures "
                       "(3.4 GHz Pentium 4).";
@@ -89,6 +101,7 @@ std::string command_page(const Results& results, const std::string& note)
     std::string body = fmt::format("<header>\n<h1>{}</h1>\n<p class=\"lead\"><code>{}</code></p>\n</header>\n", escaped(name), escaped(line));
     if (!note.empty())
         body += fmt::format("<p class=\"damage\"><strong>Not all of it:</strong> {}</p>\n", escaped(note));
+    body += partial_notice(results);
     const std::string claims = note.empty() ? claims_section(sections, false) : "";
     if (!claims.empty())
         body += html::paragraph(reading) + claims;
@@ -118,6 +131,7 @@ std::string report_page(const Results& results, const ReportNotes& notes)
         if (is_closing(record) && record.number("status") != 0)
             body += fmt::format("<p class=\"damage\"><strong>A check failed:</strong> {}: <code>{}</code> ended with exit status {}</p>\n", escaped(record.word("stage")), escaped(record.word("measured_by")),
                                 html::figure(Results::number(record, "status")));
+    body += partial_notice(results);
     const std::string claims = claims_section(sections, true);
     std::vector<std::pair<std::string, std::string>> parts{{"claims", "Claims"}};
     std::string rest;

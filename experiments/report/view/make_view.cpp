@@ -61,7 +61,7 @@ std::vector<std::vector<Vec3>> evaluate(const std::vector<DrawnBody>& bodies, st
         std::vector<Vec3> positions(body.input.surface.mesh.vertices.size());
         for (std::size_t f = 0; f < frames; ++f) {
             throw_if_interrupted();
-            evaluator(body.input.clip.frames[f], positions);
+            evaluator(body.input.clip.frame(f), positions);
             for (const std::uint32_t v : body.vertex) {
                 if (!positions[v].allFinite())
                     throw InputError::in_file(scene, fmt::format("{}: vertex {} is not finite in frame {}; it cannot be drawn", body.input.name, v, f));
@@ -125,9 +125,10 @@ Json pack_nodes(const std::vector<DrawnBody>& bodies, std::size_t frames, const 
 {
     std::vector<std::int32_t> out;
     for (std::size_t f = 0; f < frames; ++f)
-        for (const DrawnBody& body : bodies)
+        for (const DrawnBody& body : bodies) {
+            const Clip::Frame maps = body.input.nodes.empty() ? Clip::Frame() : body.input.clip.frame(f);
             for (std::size_t j = 0; j < body.input.nodes.size(); ++j) {
-                const AffineMap& map = body.input.clip.frames[f][j];
+                const AffineMap& map = maps[j];
                 const Vec3& x = body.input.nodes[j];
                 Vec3 p;
                 for (int r = 0; r < 3; ++r)
@@ -136,6 +137,7 @@ Json pack_nodes(const std::vector<DrawnBody>& bodies, std::size_t frames, const 
                 const auto g = near ? grid.point(p) : std::array<std::int32_t, 3>{Grid::unbounded, Grid::unbounded, Grid::unbounded};
                 out.insert(out.end(), g.begin(), g.end());
             }
+        }
     return pack(out, frames, out.size() / 3 / frames, 3);
 }
 
@@ -181,7 +183,8 @@ std::vector<std::int32_t> bounds_by(Method method, const ViewRequest& request, c
         std::vector<double> supports(bodies[b].bvs(bvs.level.size() - 1) * k);
         for (std::size_t f = 0; f < frames; ++f) {
             throw_if_interrupted();
-            bounder.begin(bodies[b].input.clip.frames[f]);
+            const Clip::Frame maps = bodies[b].input.clip.frame(f);
+            bounder.begin(maps);
             parallel_blocks(supports.size() / k, 1, [&](std::size_t first, std::size_t last) {
                 bounder.bound(first, last, std::span(supports).subspan(first * k, (last - first) * k));
             });
@@ -211,10 +214,13 @@ Contacts contacts(const std::vector<DrawnBody>& bodies, std::size_t frames)
         base.push_back(base.back() + static_cast<std::uint32_t>(body.bvh.triangle.size()));
     }
     std::vector<BodyFrame> now(bodies.size());
+    std::vector<Clip::Frame> maps(bodies.size());
     for (std::size_t f = 0; f < frames; ++f) {
         throw_if_interrupted();
-        for (std::size_t b = 0; b < bodies.size(); ++b)
-            now[b] = {bodies[b].input.clip.frames[f]};
+        for (std::size_t b = 0; b < bodies.size(); ++b) {
+            maps[b] = bodies[b].input.clip.frame(f);
+            now[b] = {maps[b]};
+        }
         collider.update(now);
         const std::vector<TrianglePair> pairs = collider.pairs();
         std::vector<std::int32_t> here;
@@ -258,6 +264,7 @@ nlohmann::ordered_json make_view(const ViewRequest& request)
     what.frames = request.frames - (what.first_frame ? 1 : 0);
     what.nodes = request.nodes;
     what.seed = request.seed;
+    what.partial = request.partial;
     const Inputs inputs = or_leave([what] { return load_inputs(what); });
 
     std::vector<DrawnBody> bodies;
@@ -266,10 +273,13 @@ nlohmann::ordered_json make_view(const ViewRequest& request)
         throw_if_interrupted();
         bodies.emplace_back(body);
     }
-    const std::vector<double>& times = inputs.bodies[0].clip.time_s;
-    const std::size_t frames = times.size();
+    const std::size_t frames = inputs.bodies[0].clip.frame_count();
+    std::vector<double> times;
+    for (std::size_t f = 0; f < frames; ++f)
+        times.push_back(inputs.bodies[0].clip.time_s(f));
     const DrawnBvs bvs(bodies, request.levels);
     Json view{{"title", request.title.empty() ? inputs.name : request.title}, {"text", request.text}, {"scene", request.scene}};
+    view["missing"] = inputs.missing();
     view["first"] = shown_first(request, frames, bvs.level.size() - 1);
     view["time_s"] = times;
     view["bodies"] = Json::array();

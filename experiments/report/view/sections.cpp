@@ -38,6 +38,8 @@ std::string view_sections(std::span<const nlohmann::ordered_json> views)
     for (const auto& view : views) {
         out += fmt::format("<section class=\"view\" id=\"view-{}\">\n<h2>{}</h2>\n<p>{}</p>\n", ++number, escaped(view["title"].get<std::string>()),
                            escaped(view["text"].get<std::string>()));
+        if (view.contains("missing") && !view["missing"].empty())
+            out += fmt::format("<p class=\"view-note\"><strong>Partial</strong>, without {}</p>\n", escaped(fmt::format("{}", fmt::join(view["missing"].get<std::vector<std::string>>(), "; "))));
         if (has_three())
             out += fmt::format("<noscript><p class=\"view-note\">The 3-D view needs JavaScript.</p></noscript>\n<script type=\"application/json\">{}</script>\n", script_safe(view));
         else
