@@ -12,7 +12,7 @@
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/whole_file.hpp"
 #include "toolkit/bounds/rounding.hpp"
-#include "toolkit/deform/arithmetic.hpp"
+#include "toolkit/surface/arithmetic.hpp"
 #include "toolkit/surface/input_error.hpp"
 
 namespace cinch {

@@ -5,11 +5,11 @@
 
 #include "experiments/stability/bodies.hpp"
 #include "toolkit/bounds/directions.hpp"
-#include "toolkit/deform/arithmetic.hpp"
 #include "toolkit/deform/dyadic.hpp"
 #include "toolkit/deform/motion.hpp"
 #include "toolkit/deform/weights.hpp"
 #include "toolkit/hierarchy/refit.hpp"
+#include "toolkit/surface/arithmetic.hpp"
 #include "toolkit/surface/input_error.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 

@@ -4,6 +4,7 @@
 #include <limits>
 #include <numeric>
 #include <random>
+#include <type_traits>
 
 #include <catch2/catch.hpp>
 #include <tbb/global_control.h>
@@ -37,6 +38,10 @@ std::vector<std::pair<Methods, Precision>> every_choice()
             all.emplace_back(method, precision);
     return all;
 }
+
+template <class BvhArgument, class SurfaceArgument> constexpr bool refits = std::is_constructible_v<Refitter, BvhArgument, SurfaceArgument, RefitOptions>;
+static_assert(refits<const Bvh&, const DeformableSurface&>);
+static_assert(!refits<Bvh, const DeformableSurface&> && !refits<const Bvh&, DeformableSurface> && !refits<Bvh, DeformableSurface>); // they would dangle
 
 } // namespace
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// The error terms that make double results proven upper bounds in the default rounding mode (deform/arithmetic.hpp). Notation:
+// The error terms that make double results proven upper bounds in the default rounding mode (surface/arithmetic.hpp). Notation:
 //   u = 2^-53, η = 2^-1074, γ_k = ku/(1 − ku), fl(·) round to nearest even.
 // Facts used: fl(x∘y) = (x∘y)(1 + δ) + ε with |δ| ≤ u, and ε = 0 for + and −, |ε| ≤ η/2 for ×; a sum of leaves that each
 // pass at most k roundings is within γ_k Σ|leaf| of the exact sum, in any order of summation [Higham, ch. 3].

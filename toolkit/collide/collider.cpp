@@ -9,8 +9,8 @@
 #include "toolkit/bounds/directions.hpp"
 #include "toolkit/bounds/rounding.hpp"
 #include "toolkit/collide/exact_pair.hpp"
-#include "toolkit/deform/arithmetic.hpp"
 #include "toolkit/deform/parallel.hpp"
+#include "toolkit/surface/arithmetic.hpp"
 
 namespace cinch {
 namespace {

@@ -8,6 +8,7 @@
 
 #include "toolkit/deform/dyadic.hpp"
 #include "toolkit/deform/parallel.hpp"
+#include "toolkit/surface/arithmetic.hpp"
 
 namespace cinch {
 namespace {
@@ -85,6 +86,7 @@ std::vector<Vec3> interior_points(const TriangleMesh& mesh, double points)
 
 SimulationNodes sample_nodes(const TriangleMesh& mesh, std::size_t count, std::uint64_t seed)
 {
+    require_default_arithmetic();
     if (mesh.vertices.empty() || count == 0)
         throw std::invalid_argument("sample_nodes: a mesh with vertices and a count of at least 1 are needed");
     std::vector<Vec3> points = interior_points(mesh, std::clamp(400.0 * static_cast<double>(count), 1e5, 5e5));
@@ -107,6 +109,7 @@ SimulationNodes sample_nodes(const TriangleMesh& mesh, std::size_t count, std::u
 
 Weights kernel_weights(const TriangleMesh& mesh, const SimulationNodes& nodes, double support, std::size_t* alone)
 {
+    require_default_arithmetic();
     const double h = support * nodes.fill_distance;
     struct VertexRow {
         std::vector<std::uint32_t> node;

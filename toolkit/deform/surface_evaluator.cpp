@@ -5,10 +5,10 @@
 #include <cmath>
 #include <numeric>
 
-#include "toolkit/deform/arithmetic.hpp"
 #include "toolkit/deform/evaluate.hpp"
 #include "toolkit/deform/kernel/evaluate_group.hpp"
 #include "toolkit/deform/parallel.hpp"
+#include "toolkit/surface/arithmetic.hpp"
 
 namespace cinch {
 namespace {

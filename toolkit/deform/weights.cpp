@@ -7,11 +7,13 @@
 #include <stdexcept>
 
 #include "toolkit/deform/dyadic.hpp"
+#include "toolkit/surface/arithmetic.hpp"
 
 namespace cinch {
 
 Weights to_dyadic(const Influences& influences, WeightReport* report)
 {
+    require_default_arithmetic();
     Weights out;
     out.node_count = influences.node_count;
     WeightReport counted;

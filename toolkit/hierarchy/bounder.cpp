@@ -12,10 +12,10 @@
 #include "toolkit/bounds/bound_box.hpp"
 #include "toolkit/bounds/bound_vertex.hpp"
 #include "toolkit/bounds/rounding.hpp"
-#include "toolkit/deform/arithmetic.hpp"
 #include "toolkit/hierarchy/dop.hpp"
 #include "toolkit/hierarchy/packed_bvh.hpp"
 #include "toolkit/hierarchy/spheres.hpp"
+#include "toolkit/surface/arithmetic.hpp"
 
 namespace cinch {
 namespace {

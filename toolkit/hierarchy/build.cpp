@@ -7,6 +7,8 @@
 
 #include "toolkit/hierarchy/rest_data.hpp"
 
+#include "toolkit/surface/arithmetic.hpp"
+
 namespace cinch {
 namespace {
 
@@ -122,6 +124,7 @@ std::vector<Vec3> scaled_centroids(const TriangleMesh& mesh)
 
 Bvh build_bvh(const DeformableSurface& surface, std::size_t leaf_triangles, RestDetail detail)
 {
+    require_default_arithmetic();
     if (leaf_triangles == 0)
         throw std::invalid_argument("build_bvh: a leaf needs at least one triangle");
     require_weights_of_mesh(surface);
@@ -134,6 +137,7 @@ Bvh build_bvh(const DeformableSurface& surface, std::size_t leaf_triangles, Rest
 
 Bvh build_bvh(const DeformableSurface& surface, ClusterSize leaf, RestDetail detail)
 {
+    require_default_arithmetic();
     if (leaf.triangles == 0 || leaf.vertices < 3)
         throw std::invalid_argument("build_bvh: a leaf needs room for a triangle and its vertices");
     require_weights_of_mesh(surface);

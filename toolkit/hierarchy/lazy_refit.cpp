@@ -11,8 +11,8 @@
 
 #include "toolkit/bounds/directions.hpp"
 #include "toolkit/bounds/rounding.hpp"
-#include "toolkit/deform/arithmetic.hpp"
 #include "toolkit/deform/parallel.hpp"
+#include "toolkit/surface/arithmetic.hpp"
 #include "toolkit/surface/length.hpp"
 
 namespace cinch {

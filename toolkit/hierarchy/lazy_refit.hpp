@@ -52,6 +52,8 @@ public:
     /// The surface must stay as it is, and alive; so must the BVH for methods without kernels (sphere, corners, vertices). Throws
     /// std::invalid_argument for leaves that have not enough lanes and a k that is none.
     LazyRefit(const Bvh& bvh, const DeformableSurface& surface, const LazyOptions& options);
+    LazyRefit(const Bvh&&, const DeformableSurface&, const LazyOptions&) = delete; ///< both are referred to
+    LazyRefit(const Bvh&, const DeformableSurface&&, const LazyOptions&) = delete;
 
     /// Begins a frame; what it points to must stay alive through it. Throws std::invalid_argument unless there is one transform per
     /// simulation node, or one position per vertex.

@@ -90,6 +90,8 @@ LeafSet pack_leaves(const Bvh& bvh, const DeformableSurface& surface, const Vec3
         const auto vertices = vertices_of(surface, bvh, bv);
         if (std::max<std::size_t>(vertices.size(), bv.triangle_count) > lanes)
             throw std::invalid_argument("pack_leaves: a leaf has more triangles or vertices than lanes; build_bvh(surface, ClusterSize) limits both");
+        if (bv.influence_count > most_nodes_in_float) // the premise of evaluate_leaves
+            throw std::length_error("pack_leaves: a leaf has over 65,536 simulation nodes; give its vertices fewer influences");
         pack_leaf(surface, bvh, bv, vertices, rest_origin, out);
     }
     out.value.shrink_to_fit();

@@ -7,9 +7,9 @@
 
 #include "toolkit/bounds/bound_vertex.hpp"
 #include "toolkit/bounds/rounding.hpp"
-#include "toolkit/deform/arithmetic.hpp"
 #include "toolkit/deform/parallel.hpp"
 #include "toolkit/hierarchy/bounder.hpp"
+#include "toolkit/surface/arithmetic.hpp"
 
 namespace cinch {
 namespace {

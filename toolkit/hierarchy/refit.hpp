@@ -38,6 +38,8 @@ class Refitter {
 public:
     /// Prepares the rest data that the methods need. Throws std::invalid_argument for a k that is none.
     Refitter(const Bvh& bvh, const DeformableSurface& surface, const RefitOptions& options);
+    Refitter(const Bvh&&, const DeformableSurface&, const RefitOptions&) = delete; ///< both are referred to
+    Refitter(const Bvh&, const DeformableSurface&&, const RefitOptions&) = delete;
     ~Refitter();
     Refitter(Refitter&&) noexcept;
 

@@ -13,6 +13,7 @@
 #include "toolkit/simulate/explicit_step.hpp"
 #include "toolkit/simulate/implicit_step.hpp"
 #include "toolkit/simulate/stream.hpp"
+#include "toolkit/surface/arithmetic.hpp"
 
 namespace cinch {
 
@@ -288,6 +289,7 @@ void BodySimulation::zero_pinned(Field& f) const
 
 StepReport BodySimulation::advance(double dt_s, const Integration& integration)
 {
+    require_default_arithmetic();
     if (!(dt_s >= 0) || !std::isfinite(dt_s))
         throw std::invalid_argument("advance: the time step must be finite and not negative");
     const auto start = Clock::now();

@@ -12,6 +12,7 @@
 
 #include "toolkit/deform/parallel.hpp"
 #include "toolkit/deform/sample_nodes.hpp"
+#include "toolkit/surface/arithmetic.hpp"
 #include "toolkit/surface/length.hpp"
 
 namespace cinch {
@@ -114,6 +115,7 @@ Fit fit_gradient(const Eigen::Matrix3Xd& offsets, const Eigen::VectorXd& weights
 
 MeshlessBody discretise(std::span<const Vec3> nodes, std::span<const double> volume, const MeshlessOptions& options)
 {
+    require_default_arithmetic();
     auto positive = [](double x) { return x > 0 && std::isfinite(x); };
     if (nodes.empty() || !positive(options.support_factor) || options.nearest < 1 || !positive(options.density) || !(options.support_radius >= 0) ||
         (!volume.empty() && volume.size() != nodes.size()) || !std::all_of(volume.begin(), volume.end(), positive) ||

@@ -9,10 +9,10 @@
 
 #include <Eigen/Geometry>
 
-#include "toolkit/deform/arithmetic.hpp"
 #include "toolkit/deform/parallel.hpp"
 #include "toolkit/simulate/load_body.hpp"
 #include "toolkit/simulate/stream.hpp"
+#include "toolkit/surface/arithmetic.hpp"
 #include "toolkit/surface/input_error.hpp"
 
 namespace cinch {

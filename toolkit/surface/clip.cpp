@@ -4,6 +4,8 @@
 #include <memory>
 #include <stdexcept>
 
+#include "toolkit/surface/arithmetic.hpp"
+
 namespace cinch {
 
 Clip::Clip(std::string clip_name, std::size_t count, std::function<double(std::size_t)> time_s, std::function<Frame(std::size_t)> frame)
@@ -28,7 +30,11 @@ std::size_t Clip::checked(std::size_t i) const
 
 double Clip::time_s(std::size_t i) const { return time_s_(checked(i)); }
 
-Clip::Frame Clip::frame(std::size_t i) const { return frame_(checked(i)); }
+Clip::Frame Clip::frame(std::size_t i) const
+{
+    require_default_arithmetic();
+    return frame_(checked(i));
+}
 
 Clip evenly_spread(const Clip& clip, std::size_t frames)
 {

@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 
+#include "toolkit/surface/arithmetic.hpp"
 #include "toolkit/surface/character.hpp"
 #include "toolkit/surface/gltf_accessor.hpp"
 #include "toolkit/surface/gltf_animation.hpp"
@@ -262,6 +263,7 @@ void require_whole(Character& character)
 
 Character parse_gltf(std::string_view bytes, const std::string& file, Coverage coverage)
 {
+    require_default_arithmetic();
     GltfDocument document(bytes, file);
     Character out;
     out.file = file;

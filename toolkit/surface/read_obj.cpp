@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <span>
 
+#include "toolkit/surface/arithmetic.hpp"
 #include "toolkit/surface/left_out.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 #include "toolkit/surface/text_scan.hpp"
@@ -59,6 +60,7 @@ void refuse_other_surfaces(const TextScan& scan, std::string_view keyword)
 
 MeshFile parse_obj(std::string_view bytes, const std::string& file)
 {
+    require_default_arithmetic();
     TextScan scan(bytes, file, {.comment = '#', .comments_end_words = true, .joined_lines = true});
     MeshFile out;
     TriangleMesh& mesh = out.mesh;

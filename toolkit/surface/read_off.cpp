@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "toolkit/surface/arithmetic.hpp"
 #include "toolkit/surface/left_out.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 #include "toolkit/surface/text_scan.hpp"
@@ -209,6 +210,7 @@ bool seems_joined(TextScan scan, const Header& header, bool edge_count)
 
 MeshFile parse_off(std::string_view bytes, const std::string& file)
 {
+    require_default_arithmetic();
     TextScan scan(bytes, file, {.comment = '#', .comments_end_words = true});
     const Header header = read_header(scan);
     const std::vector<Layout> ways = layouts(scan, header);

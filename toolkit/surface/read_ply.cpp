@@ -7,6 +7,7 @@
 #include <cstring>
 #include <optional>
 
+#include "toolkit/surface/arithmetic.hpp"
 #include "toolkit/surface/left_out.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 #include "toolkit/surface/text_scan.hpp"
@@ -341,6 +342,7 @@ std::size_t index_list(const Element& element)
 
 MeshFile parse_ply(std::string_view bytes, const std::string& file)
 {
+    require_default_arithmetic();
     const Header header = read_header(bytes, file);
     const auto is_vertices = [](const Element& e) { return e.name == "vertex"; };
     const auto vertex_element = std::find_if(header.elements.begin(), header.elements.end(), is_vertices);

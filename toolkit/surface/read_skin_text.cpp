@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "toolkit/surface/arithmetic.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 #include "toolkit/surface/skin.hpp"
 #include "toolkit/surface/text_scan.hpp"
@@ -27,6 +28,7 @@ void expect_count(TextScan& scan, std::size_t found, std::size_t wanted, const s
 
 Influences parse_weights_text(std::string_view bytes, const std::string& file, std::size_t vertices)
 {
+    require_default_arithmetic();
     TextScan scan(bytes, file, {.comment = '#'});
     expect_count(scan, count_between(scan, "the number of vertices", 0), vertices, "vertices", "mesh has");
     Influences out;
@@ -61,6 +63,7 @@ Influences parse_weights_text(std::string_view bytes, const std::string& file, s
 
 std::vector<Clip> parse_clips_text(std::string_view bytes, const std::string& file, std::uint32_t nodes)
 {
+    require_default_arithmetic();
     TextScan scan(bytes, file, {.comment = '#'});
     const std::size_t clips = count_between(scan, "the number of clips", 1);
     std::vector<Clip> out;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "toolkit/surface/arithmetic.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 #include "toolkit/surface/text_scan.hpp"
 
@@ -97,6 +98,7 @@ MeshFile parse_ascii(std::string_view bytes, const std::string& file)
 
 MeshFile parse_stl(std::string_view bytes, const std::string& file)
 {
+    require_default_arithmetic();
     // Binary files may begin with "solid" too, so the count decides. Below 4 GiB it is below 2^27, so the byte of its highest bits is below
     // 8, and no such byte is in a text.
     const bool has_header = bytes.size() >= header_bytes;

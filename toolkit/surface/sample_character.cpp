@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 
+#include "toolkit/surface/arithmetic.hpp"
 #include "toolkit/surface/character.hpp"
 #include "toolkit/surface/input_error.hpp"
 
@@ -129,6 +130,7 @@ Clip rest_pose(const Character& character) { return sample(character, character.
 
 Clip sample(const Character& character, const Character::Animation& animation, double fps)
 {
+    require_default_arithmetic();
     if (!animation.fault.empty())
         throw InputError(animation.fault);
     const double length = animation.last_s - animation.first_s;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "toolkit/surface/shapes.hpp"
 
+#include "toolkit/surface/arithmetic.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -132,6 +134,7 @@ std::vector<std::string> shape_names()
 
 std::optional<TriangleMesh> named_shape(std::string_view name)
 {
+    require_default_arithmetic();
     for (const Shape& shape : shapes)
         if (name == shape.name)
             return shape.make();

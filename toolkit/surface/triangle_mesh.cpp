@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "toolkit/surface/triangle_mesh.hpp"
 
+#include "toolkit/surface/arithmetic.hpp"
+
 #include <algorithm>
 #include <map>
 #include <utility>
@@ -25,6 +27,7 @@ Extent extent(const TriangleMesh& mesh)
 
 void centre_and_scale(TriangleMesh& mesh, double half)
 {
+    require_default_arithmetic();
     const Extent e = extent(mesh);
     for (Vec3& v : mesh.vertices) {
         v -= e.centre;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "toolkit/deform/arithmetic.hpp"
+#include "toolkit/surface/arithmetic.hpp"
 
 #include <stdexcept>
 
