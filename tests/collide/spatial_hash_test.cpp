@@ -105,4 +105,8 @@ TEST_CASE("spatial hashing: what is not finite meets everything, whichever of it
     const TriangleMesh mesh = ring_sphere(20);
     const SpatialHash::Body too_few{&mesh, std::span(mesh.vertices).first(3)};
     CHECK_THROWS_AS(hash.load({&too_few, 1}), std::invalid_argument);
+    Pairs none;
+    CHECK_THROWS_AS(hash.find(none), std::logic_error); // not what is left of the last load
+    CHECK_THROWS_AS(SpatialHash().find(none), std::logic_error);
+    CHECK(none.empty());
 }
