@@ -14,15 +14,18 @@ struct AffineMap {
 };
 inline constexpr AffineMap identity_map{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
 
-/// Motion as frames, each made when it is asked for: a clip of a million frames takes the memory of those that are held. Frame i
-/// moves simulation node j by frame(i)[j]; all frames have as many maps. Copies share what the frames are made from.
+/// Motion as frames, each made when it is asked for: a clip of a million frames takes the memory of those that are
+/// held. Frame i moves simulation node j by frame(i)[j]; all frames have as many maps. Copies share what the frames
+/// are made from.
 class Clip {
 public:
     using Frame = std::vector<AffineMap>;
 
     Clip() = default;
-    /// Frames that are computed. `time_s` and `frame` are called with i < count, by any thread, and always answer the same.
-    Clip(std::string clip_name, std::size_t count, std::function<double(std::size_t)> time_s, std::function<Frame(std::size_t)> frame);
+    /// Frames that are computed. `time_s` and `frame` are called with i < count, by any thread, and always answer the
+    /// same.
+    Clip(std::string clip_name, std::size_t count, std::function<double(std::size_t)> time_s,
+         std::function<Frame(std::size_t)> frame);
     /// Frames that are there already, one per time. Throws std::invalid_argument where their numbers differ.
     Clip(std::string clip_name, std::vector<double> time_s, std::vector<Frame> frames);
 
@@ -42,7 +45,8 @@ private:
     std::function<Frame(std::size_t)> frame_;
 };
 
-/// `frames` of the clip, evenly spread, the last one included; 0, and as many as it has or more, keep all. The clip has at most 10¹² frames.
+/// `frames` of the clip, evenly spread, the last one included; 0, and as many as it has or more, keep all. The clip
+/// has at most 10¹² frames.
 Clip evenly_spread(const Clip& clip, std::size_t frames);
 
 } // namespace cinch
