@@ -39,7 +39,9 @@ long peak_kb(const std::vector<std::string>& arguments)
     }
     int status = 0;
     rusage usage{};
-    return wait4(child, &status, 0, &usage) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0 ? usage.ru_maxrss : -1;
+    return wait4(child, &status, 0, &usage) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0
+               ? usage.ru_maxrss
+               : -1;
 }
 
 } // namespace
@@ -47,14 +49,16 @@ long peak_kb(const std::vector<std::string>& arguments)
 TEST_CASE("what is not modelled is refused by every command, and what is bounded of it says so everywhere")
 {
     const std::string file = report("F03_morph_animated_noted.gltf");
-    for (const std::string command : {"verify " + file + " --frames 2", "tightness " + file + " --frames 2", "cost " + file + " --frames 2 --this-input-only --kdops 6 --seconds 0.01",
+    for (const std::string command : {"verify " + file + " --frames 2", "tightness " + file + " --frames 2",
+                                      "cost " + file + " --frames 2 --this-input-only --kdops 6 --seconds 0.01",
                                       "scaling " + file + " --seconds 0.001", "view " + file + " --frames 2"}) {
         INFO(command);
         const bool view = command.starts_with("view");
         const test::Run refused = test::cinch(command + (view ? " --json" : ""));
         CHECK(refused.status == 2);
         CHECK(refused.out.empty());
-        CHECK(refused.err == "cinch: " + file + ": has what is not modelled: " + morph + "; --partial bounds the rest, and every result says so\n");
+        CHECK(refused.err == "cinch: " + file + ": has what is not modelled: " + morph +
+                                 "; --partial bounds the rest, and every result says so\n");
 
         const test::Run records = test::cinch(command + " --partial --json");
         CHECK(records.status == 0);
@@ -74,7 +78,8 @@ TEST_CASE("what is not modelled is refused by every command, and what is bounded
         text << std::ifstream(page).rdbuf();
         CHECK_THAT(text.str(), Catch::Contains("<strong>Partial</strong>, without " + morph));
     }
-    CHECK_THAT(test::cinch("verify " + file + " --partial").out, Catch::Contains(" 0 violated (partial, without " + morph + ")\n"));
+    CHECK_THAT(test::cinch("verify " + file + " --partial").out,
+               Catch::Contains(" 0 violated (partial, without " + morph + ")\n"));
     const test::Run whole = test::cinch("verify " + report("F02_animation_pointer.gltf") + " --partial --json");
     for (const std::string& line : whole.lines()) { // nothing is missing
         CHECK(json::parse(line)["partial"] == false);
@@ -88,8 +93,10 @@ TEST_CASE("what is not modelled is refused by every command, and what is bounded
 TEST_CASE("a scene with a character that is not modelled as a whole is refused")
 {
     const test::TemporaryFolder folder;
-    const auto scene = folder.write("s.json", R"({"name": "s", "duration": 0.1, "bodies": [{"name": "b", "surface": ")" + report("F03_morph_animated_noted.gltf") +
-                                                  R"(", "nodes": 4, "density": 1000}], "effects": [{"effect": "gravity"}]})");
+    const auto scene =
+        folder.write("s.json", R"({"name": "s", "duration": 0.1, "bodies": [{"name": "b", "surface": ")" +
+                                   report("F03_morph_animated_noted.gltf") +
+                                   R"(", "nodes": 4, "density": 1000}], "effects": [{"effect": "gravity"}]})");
     const test::Run run = test::cinch("simulate " + scene.string());
     CHECK(run.status == 2);
     CHECK_THAT(run.err, Catch::Contains("clip 'anim0' has what is not modelled: " + morph));
@@ -104,11 +111,15 @@ TEST_CASE("changes of weights are reported from rounding on, with the largest on
     folder.write("t.txt", "1\na 1 2\n0 1 0 0 0 0 1 0 0 0 0 1 0 1 0 0 1 0 1 0 0 0 0 1 0\n");
     auto run = [&](const char* weights) {
         folder.write("w.txt", weights);
-        return std::pair(test::cinch("verify " + at + "m.off --weights " + at + "w.txt --transforms " + at + "t.txt"),
-                         test::cinch("verify " + at + "m.off --weights " + at + "w.txt --transforms " + at + "t.txt --json"));
+        return std::pair(
+            test::cinch("verify " + at + "m.off --weights " + at + "w.txt --transforms " + at + "t.txt"),
+            test::cinch("verify " + at + "m.off --weights " + at + "w.txt --transforms " + at + "t.txt --json"));
     };
     const auto [table, records] = run("3 2\n2 0 0.5 1 0.4999\n1 0 1\n2 0 0.5 1 0.49999\n");
-    CHECK_THAT(table.out, Catch::Contains("2 of 3 vertices had weights that do not sum to 1 (sums 0.9999 to 1); normalised, which changed weights by up to 0.01 %"));
+    CHECK_THAT(
+        table.out,
+        Catch::Contains(
+            "2 of 3 vertices had weights that do not sum to 1 (sums 0.9999 to 1); normalised, which changed weights by up to 0.01 %"));
     for (const std::string& line : records.lines()) {
         CHECK(json::parse(line)["weights_normalised"] == 2);
         CHECK(json::parse(line)["largest_weight_change"].get<double>() == Approx(1e-4).epsilon(1e-3));
@@ -129,5 +140,7 @@ TEST_CASE("three frames of a long clip take what three frames take")
     CHECK(peak_kb({"verify", file, "--frames", "3", "--fps", "1000000", "--threads", "2"}) > 0);
     const test::Run all = test::cinch("verify " + file + " --fps 1000");
     CHECK(all.status == 2);
-    CHECK_THAT(all.err, Catch::Contains("clip 'anim0' has 30,000,001 frames at this rate; --frames chooses some, --fps takes fewer"));
+    CHECK_THAT(
+        all.err,
+        Catch::Contains("clip 'anim0' has 30,000,001 frames at this rate; --frames chooses some, --fps takes fewer"));
 }

@@ -35,35 +35,51 @@ inline std::string base64(const std::string& bytes)
 
 /// A glTF document with one buffer, built piece by piece.
 struct Document {
-    json root = {{"asset", {{"version", "2.0"}}}, {"accessors", json::array()}, {"bufferViews", json::array()}, {"animations", json::array()}};
+    json root = {{"asset", {{"version", "2.0"}}},
+                 {"accessors", json::array()},
+                 {"bufferViews", json::array()},
+                 {"animations", json::array()}};
     std::string bytes;
 
     template <class T> int view(const std::vector<T>& values)
     {
         while (bytes.size() % 4)
             bytes += '\0';
-        root["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", bytes.size()}, {"byteLength", values.size() * sizeof(T)}});
+        root["bufferViews"].push_back(
+            {{"buffer", 0}, {"byteOffset", bytes.size()}, {"byteLength", values.size() * sizeof(T)}});
         bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
         return static_cast<int>(root["bufferViews"].size()) - 1;
     }
-    template <class T> int accessor(const std::vector<T>& values, const char* type, int component, int per_element, bool normalized = false)
+    template <class T> int accessor(const std::vector<T>& values, const char* type, int component, int per_element,
+                                    bool normalized = false)
     {
-        root["accessors"].push_back({{"bufferView", view(values)}, {"componentType", component}, {"type", type},
-                                     {"count", values.size() / static_cast<std::size_t>(per_element)}, {"normalized", normalized}});
+        root["accessors"].push_back({{"bufferView", view(values)},
+                                     {"componentType", component},
+                                     {"type", type},
+                                     {"count", values.size() / static_cast<std::size_t>(per_element)},
+                                     {"normalized", normalized}});
         return static_cast<int>(root["accessors"].size()) - 1;
     }
-    int floats(const std::vector<float>& values, const char* type, int per_element) { return accessor(values, type, 5126, per_element); }
-    void animate(const std::string& name, const char* path, const char* interpolation, std::vector<float> times, std::vector<float> values, int per_element)
+    int floats(const std::vector<float>& values, const char* type, int per_element)
     {
-        const int input = floats(times, "SCALAR", 1), output = floats(values, per_element == 4 ? "VEC4" : "VEC3", per_element);
+        return accessor(values, type, 5126, per_element);
+    }
+    void animate(const std::string& name, const char* path, const char* interpolation, std::vector<float> times,
+                 std::vector<float> values, int per_element)
+    {
+        const int input = floats(times, "SCALAR", 1),
+                  output = floats(values, per_element == 4 ? "VEC4" : "VEC3", per_element);
         json sampler = {{"input", input}, {"output", output}};
         if (*interpolation)
             sampler["interpolation"] = interpolation;
-        root["animations"].push_back({{"name", name}, {"samplers", {sampler}}, {"channels", {{{"sampler", 0}, {"target", {{"node", 1}, {"path", path}}}}}}});
+        root["animations"].push_back({{"name", name},
+                                      {"samplers", {sampler}},
+                                      {"channels", {{{"sampler", 0}, {"target", {{"node", 1}, {"path", path}}}}}}});
     }
     std::string text()
     {
-        root["buffers"] = {{{"byteLength", bytes.size()}, {"uri", "data:application/octet-stream;base64," + base64(bytes)}}};
+        root["buffers"] = {
+            {{"byteLength", bytes.size()}, {"uri", "data:application/octet-stream;base64," + base64(bytes)}}};
         return root.dump();
     }
     Character parse(Coverage coverage = Coverage::whole) { return parse_gltf(text(), "document.gltf", coverage); }
@@ -73,15 +89,21 @@ struct Document {
 inline Document triangle()
 {
     Document d;
-    d.root["nodes"] = {{{"mesh", 0}, {"skin", 0}}, {{"name", "moving"}, {"translation", {0, 1, 0}}}, {{"name", "still"}}};
+    d.root["nodes"] = {
+        {{"mesh", 0}, {"skin", 0}}, {{"name", "moving"}, {"translation", {0, 1, 0}}}, {{"name", "still"}}};
     d.root["scenes"] = {{{"nodes", {0, 1, 2}}}};
     const int position = d.floats({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0}, "VEC3", 3);
     const int joints = d.accessor<std::uint8_t>({0, 1, 0, 0, 1, 0, 0, 0, 1, 1, 0, 0, 0, 1, 0, 0}, "VEC4", 5121, 4);
-    const int weights = d.accessor<std::uint8_t>({51, 204, 0, 0, 255, 0, 0, 0, 128, 127, 0, 0, 51, 204, 0, 0}, "VEC4", 5121, 4, true);
-    const int bind = d.floats({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, /**/ 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -1, 0, 1}, "MAT4", 16);
+    const int weights =
+        d.accessor<std::uint8_t>({51, 204, 0, 0, 255, 0, 0, 0, 128, 127, 0, 0, 51, 204, 0, 0}, "VEC4", 5121, 4, true);
+    const int bind = d.floats(
+        {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, /**/ 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -1, 0, 1},
+        "MAT4", 16);
     const int indices = d.accessor<std::uint16_t>({0, 1, 2, 3, 1, 2}, "SCALAR", 5123, 1);
     d.root["skins"] = {{{"joints", {2, 1}}, {"inverseBindMatrices", bind}}};
-    d.root["meshes"] = {{{"primitives", {{{"attributes", {{"POSITION", position}, {"JOINTS_0", joints}, {"WEIGHTS_0", weights}}}, {"indices", indices}}}}}};
+    d.root["meshes"] = {{{"primitives",
+                          {{{"attributes", {{"POSITION", position}, {"JOINTS_0", joints}, {"WEIGHTS_0", weights}}},
+                            {"indices", indices}}}}}};
     return d;
 }
 

@@ -29,7 +29,9 @@ std::vector<TrueBox> true_boxes(const std::string& name)
     for (std::string line; std::getline(in, line);) {
         TrueBox b;
         Vec3 &l = b.box.low, &h = b.box.high;
-        REQUIRE(std::sscanf(line.c_str(), "t=%lf s: true box of the deformed surface min (%lf, %lf, %lf) max (%lf, %lf, %lf)", &b.time_s, &l[0], &l[1], &l[2], &h[0], &h[1], &h[2]) == 7);
+        REQUIRE(std::sscanf(line.c_str(),
+                            "t=%lf s: true box of the deformed surface min (%lf, %lf, %lf) max (%lf, %lf, %lf)",
+                            &b.time_s, &l[0], &l[1], &l[2], &h[0], &h[1], &h[2]) == 7);
         out.push_back(b);
     }
     REQUIRE(out.size() == 3);
@@ -40,8 +42,9 @@ std::vector<TrueBox> true_boxes(const std::string& name)
 
 TEST_CASE("reported characters have the boxes that they have")
 {
-    for (const std::string name : {"F02_animation_pointer", "F04_matrix_scale10_translation", "F06_zero_accessor_joints", "F07_long_clip_memory",
-                                   "F09_duplicate_key_times_other_clip", "F11_plus_in_uri", "F16_other_scene"}) {
+    for (const std::string name :
+         {"F02_animation_pointer", "F04_matrix_scale10_translation", "F06_zero_accessor_joints",
+          "F07_long_clip_memory", "F09_duplicate_key_times_other_clip", "F11_plus_in_uri", "F16_other_scene"}) {
         INFO(name);
         const Character c = read_gltf(report(name + ".gltf"));
         CHECK(c.missing.empty());
@@ -58,13 +61,19 @@ TEST_CASE("reported characters have the boxes that they have")
 
 TEST_CASE("reported characters that are not modelled are refused by name")
 {
-    for (const auto& [name, reason] : {std::pair("F03_morph_animated_noted.gltf", "what is not modelled: morph targets with weights that are not 0 (nodes[0])"),
-                                       {"F03_morph_static_node_weights.gltf", "what is not modelled: morph targets with weights that are not 0 (nodes[0])"},
-                                       {"F05_khr_meshopt_required_silent.glb", "is compressed with KHR_meshopt_compression, which is not supported; export it without compression"},
-                                       {"F08_draco_required.glb", "is compressed with KHR_draco_mesh_compression, which is not supported; export it without compression"},
-                                       {"F10_message_empty.gltf", "draws no mesh that a skin deforms"}}) {
+    for (const auto& [name, reason] :
+         {std::pair("F03_morph_animated_noted.gltf",
+                    "what is not modelled: morph targets with weights that are not 0 (nodes[0])"),
+          {"F03_morph_static_node_weights.gltf",
+           "what is not modelled: morph targets with weights that are not 0 (nodes[0])"},
+          {"F05_khr_meshopt_required_silent.glb",
+           "is compressed with KHR_meshopt_compression, which is not supported; export it without compression"},
+          {"F08_draco_required.glb",
+           "is compressed with KHR_draco_mesh_compression, which is not supported; export it without compression"},
+          {"F10_message_empty.gltf", "draws no mesh that a skin deforms"}}) {
         INFO(name);
-        CHECK_THAT(refusal(read_bytes(report(name)), name), Catch::StartsWith(std::string(name) + ": ") && Catch::Contains(reason));
+        CHECK_THAT(refusal(read_bytes(report(name)), name),
+                   Catch::StartsWith(std::string(name) + ": ") && Catch::Contains(reason));
     }
     for (const std::string name : {"F03_morph_animated_noted", "F03_morph_static_node_weights"}) {
         const Character c = read_gltf(report(name + ".gltf"), Coverage::partial);

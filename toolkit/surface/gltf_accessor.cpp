@@ -14,7 +14,9 @@ enum class Component { int8 = 5120, uint8 = 5121, int16 = 5122, uint16 = 5123, u
 
 std::size_t bytes_of(Component type)
 {
-    return type == Component::int8 || type == Component::uint8 ? 1 : type == Component::int16 || type == Component::uint16 ? 2 : 4;
+    return type == Component::int8 || type == Component::uint8     ? 1
+           : type == Component::int16 || type == Component::uint16 ? 2
+                                                                   : 4;
 }
 
 // What 1 is stored as; 0 for types that are not normalised.
@@ -41,7 +43,8 @@ Component component_of(const GltfValue& holder)
 std::size_t components_of(const GltfValue& accessor)
 {
     const std::string& type = accessor["type"].text();
-    for (const auto& [name, count] : {std::pair("SCALAR", 1), {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT2", 4}, {"MAT3", 9}, {"MAT4", 16}})
+    for (const auto& [name, count] :
+         {std::pair("SCALAR", 1), {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT2", 4}, {"MAT3", 9}, {"MAT4", 16}})
         if (type == name)
             return static_cast<std::size_t>(count);
     accessor.fail("has the unknown type '" + printable(type) + "'");
@@ -101,10 +104,13 @@ private:
             note_extensions(part, missing_);
         const std::size_t count = sparse["count"].index(), all = out.size() / components;
         if (count > all)
-            accessor_.fail("has a sparse part of " + std::to_string(count) + " elements, more than the " + std::to_string(all) + " it has");
+            accessor_.fail("has a sparse part of " + std::to_string(count) + " elements, more than the " +
+                           std::to_string(all) + " it has");
         std::vector<double> at(count), value(count * components);
-        copy(indices["bufferView"].index(), indices.index_or("byteOffset", 0), component_of(indices), false, 1, false, at);
-        copy(values["bufferView"].index(), values.index_or("byteOffset", 0), type, normalized(), components, false, value);
+        copy(indices["bufferView"].index(), indices.index_or("byteOffset", 0), component_of(indices), false, 1, false,
+             at);
+        copy(values["bufferView"].index(), values.index_or("byteOffset", 0), type, normalized(), components, false,
+             value);
         for (std::size_t i = 0; i < count; ++i) {
             if (!(at[i] >= 0 && at[i] < static_cast<double>(all)))
                 accessor_.fail("has a sparse index out of range");
@@ -114,7 +120,8 @@ private:
     }
 
     // out.size() / components elements from a buffer view.
-    void copy(std::size_t view_index, std::size_t offset, Component type, bool normalized, std::size_t components, bool strided, std::vector<double>& out)
+    void copy(std::size_t view_index, std::size_t offset, Component type, bool normalized, std::size_t components,
+              bool strided, std::vector<double>& out)
     {
         const GltfValue view = document_.at("bufferViews", view_index);
         note_extensions(view, missing_);
@@ -123,10 +130,12 @@ private:
         const std::string& data = document_.buffer(buffer);
         const std::size_t begin = view.index_or("byteOffset", 0), length = view["byteLength"].index();
         const std::size_t size = bytes_of(type), element = size * components, count = out.size() / components;
-        const std::size_t declared = view.index_or("byteStride", 0), stride = strided && declared > 0 ? declared : element;
+        const std::size_t declared = view.index_or("byteStride", 0),
+                          stride = strided && declared > 0 ? declared : element;
         if (begin > data.size() || length > data.size() - begin)
             accessor_.fail("lies in " + view.place() + ", which reaches past its buffer");
-        if (count > 0 && (offset > length || element > length - offset || (count - 1) > (length - offset - element) / stride))
+        if (count > 0 &&
+            (offset > length || element > length - offset || (count - 1) > (length - offset - element) / stride))
             accessor_.fail("reaches past " + view.place());
         const double one = normalized ? one_of(type) : 0;
         for (std::size_t i = 0; i < count; ++i)

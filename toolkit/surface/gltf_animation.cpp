@@ -14,14 +14,16 @@ namespace {
 
 constexpr const char* morphing = "morph targets with weights that are not 0";
 
-// What a channel moves: a property of a node, in the words of the core specification; or nothing that can move a vertex; or what is not known.
+// What a channel moves: a property of a node, in the words of the core specification; or nothing that can move a
+// vertex; or what is not known.
 struct Target {
     enum class Kind { node, harmless, unknown } kind = Kind::harmless;
     std::size_t node = 0;
     std::string path;
 };
 
-// Pointers at what a plain channel could name are such channels; those at materials, cameras, lights and the like move no vertex.
+// Pointers at what a plain channel could name are such channels; those at materials, cameras, lights and the like
+// move no vertex.
 Target target_of_pointer(const std::string& pointer)
 {
     std::vector<std::string> steps;
@@ -52,7 +54,8 @@ Target target_of_pointer(const std::string& pointer)
 
 class AnimationReader {
 public:
-    AnimationReader(GltfDocument& document, const GltfSkeleton& skeleton, const std::vector<GltfMorph>& morphs, const GltfValue& source, Character::Animation& out)
+    AnimationReader(GltfDocument& document, const GltfSkeleton& skeleton, const std::vector<GltfMorph>& morphs,
+                    const GltfValue& source, Character::Animation& out)
         : document_(document), skeleton_(skeleton), morphs_(morphs), source_(source), out_(out)
     {
     }
@@ -68,14 +71,16 @@ public:
                 missing_.add(morphing, document_.at("nodes", morph.node).named());
         if (equal_times_ > 0)
             out_.notes.push_back("clip '" + out_.name + "': " + std::to_string(equal_times_) +
-                                 (equal_times_ == 1 ? " key has" : " keys have") + " the time of the one before; the later one wins");
+                                 (equal_times_ == 1 ? " key has" : " keys have") +
+                                 " the time of the one before; the later one wins");
         out_.missing = missing_.names();
     }
 
 private:
     std::string where(const GltfValue& channel, const Target& target) const
     {
-        return "clip '" + out_.name + "', " + channel.place() + " (" + target.path + " of " + document_.at("nodes", target.node).named() + ")";
+        return "clip '" + out_.name + "', " + channel.place() + " (" + target.path + " of " +
+               document_.at("nodes", target.node).named() + ")";
     }
 
     [[noreturn]] void fail(const std::string& reason) const { throw InputError::in_file(document_.file(), reason); }
@@ -92,7 +97,9 @@ private:
             const std::string pointer = extension ? (*extension)["pointer"].text() : "";
             const Target found = target_of_pointer(pointer);
             if (found.kind == Target::Kind::unknown)
-                missing_.add("the animation of " + (pointer.empty() ? std::string("what no pointer names") : one_line(pointer)), channel.place());
+                missing_.add("the animation of " +
+                                 (pointer.empty() ? std::string("what no pointer names") : one_line(pointer)),
+                             channel.place());
             return found;
         }
         const auto node = target.index_of("node");
@@ -107,8 +114,10 @@ private:
     {
         const Target target = target_of(channel);
         const bool at_node = target.kind == Target::Kind::node;
-        const std::uint32_t bone = at_node ? (document_.at("nodes", target.node), skeleton_.bone_of(target.node)) : GltfSkeleton::none;
-        const auto morph = std::find_if(morphs_.begin(), morphs_.end(), [&](const GltfMorph& m) { return at_node && m.node == target.node; });
+        const std::uint32_t bone =
+            at_node ? (document_.at("nodes", target.node), skeleton_.bone_of(target.node)) : GltfSkeleton::none;
+        const auto morph = std::find_if(morphs_.begin(), morphs_.end(),
+                                        [&](const GltfMorph& m) { return at_node && m.node == target.node; });
         const bool moves = at_node && (target.path == "weights" ? morph != morphs_.end() : bone != GltfSkeleton::none);
         if (!moves) { // as much of it as is sound belongs to the clip's length
             try {
@@ -126,7 +135,8 @@ private:
                 missing_.add(morphing, document_.at("nodes", target.node).named());
         } else if (!skeleton_.can_animate(bone)) {
             extend(times(channel));
-            missing_.add("the animation of a node whose matrix is no translation, rotation and scale", document_.at("nodes", target.node).named());
+            missing_.add("the animation of a node whose matrix is no translation, rotation and scale",
+                         document_.at("nodes", target.node).named());
         } else {
             add_curve(channel, target, bone);
         }
@@ -139,7 +149,10 @@ private:
         return sampler;
     }
 
-    std::vector<double> times(const GltfValue& channel) { return read_accessor(document_, sampler(channel)["input"].index(), 1, missing_); }
+    std::vector<double> times(const GltfValue& channel)
+    {
+        return read_accessor(document_, sampler(channel)["input"].index(), 1, missing_);
+    }
 
     void extend(const std::vector<double>& times)
     {
@@ -154,7 +167,9 @@ private:
     {
         Curve curve;
         curve.bone = bone;
-        curve.target = target.path == "translation" ? Curve::Target::translation : target.path == "rotation" ? Curve::Target::rotation : Curve::Target::scale;
+        curve.target = target.path == "translation" ? Curve::Target::translation
+                       : target.path == "rotation"  ? Curve::Target::rotation
+                                                    : Curve::Target::scale;
         const GltfValue from = sampler(channel);
         const std::string interpolation = from.text_or("interpolation", "LINEAR");
         if (interpolation == "STEP")
@@ -173,10 +188,12 @@ private:
         }
         const std::size_t per_key = curve.interpolation == Curve::Interpolation::cubic_spline ? 3 : 1;
         if (curve.time_s.empty() || curve.value.size() != per_key * curve.time_s.size())
-            fail(where(channel, target) + ": " + std::to_string(curve.time_s.size()) + " keys but " + std::to_string(curve.value.size()) + " values");
+            fail(where(channel, target) + ": " + std::to_string(curve.time_s.size()) + " keys but " +
+                 std::to_string(curve.value.size()) + " values");
         for (std::size_t i = 1; i < curve.time_s.size(); ++i) {
             if (curve.time_s[i] < curve.time_s[i - 1])
-                fail(where(channel, target) + ": key times do not ascend, key " + std::to_string(i) + " is earlier than the one before");
+                fail(where(channel, target) + ": key times do not ascend, key " + std::to_string(i) +
+                     " is earlier than the one before");
             equal_times_ += curve.time_s[i] == curve.time_s[i - 1];
         }
         extend(curve.time_s);
@@ -205,7 +222,8 @@ bool GltfMorph::moved_by(const std::vector<double>& all) const
     return false;
 }
 
-void read_animations(GltfDocument& document, const GltfSkeleton& skeleton, const std::vector<GltfMorph>& morphs, Character& out)
+void read_animations(GltfDocument& document, const GltfSkeleton& skeleton, const std::vector<GltfMorph>& morphs,
+                     Character& out)
 {
     std::set<std::string> names;
     for (std::size_t a = 0; a < document.count("animations"); ++a) {

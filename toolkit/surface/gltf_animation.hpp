@@ -17,6 +17,7 @@ struct GltfMorph {
 };
 
 /// All animations of the file, each with what it misses or why it cannot be used; and the rest pose.
-void read_animations(GltfDocument& document, const GltfSkeleton& skeleton, const std::vector<GltfMorph>& morphs, Character& out);
+void read_animations(GltfDocument& document, const GltfSkeleton& skeleton, const std::vector<GltfMorph>& morphs,
+                     Character& out);
 
 } // namespace cinch

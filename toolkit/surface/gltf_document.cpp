@@ -16,7 +16,10 @@ namespace fs = std::filesystem;
 
 int hex_digit(char c)
 {
-    return c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
+    return c >= '0' && c <= '9'   ? c - '0'
+           : c >= 'a' && c <= 'f' ? c - 'a' + 10
+           : c >= 'A' && c <= 'F' ? c - 'A' + 10
+                                  : -1;
 }
 
 // Throws the position of what is no base64.
@@ -29,7 +32,12 @@ std::string base64_decoded(std::string_view text)
     std::uint32_t group = 0;
     for (std::size_t i = 0; i < text.size(); ++i) {
         const char c = text[i];
-        const int digit = c >= 'A' && c <= 'Z' ? c - 'A' : c >= 'a' && c <= 'z' ? c - 'a' + 26 : c >= '0' && c <= '9' ? c - '0' + 52 : c == '+' ? 62 : c == '/' ? 63 : -1;
+        const int digit = c >= 'A' && c <= 'Z'   ? c - 'A'
+                          : c >= 'a' && c <= 'z' ? c - 'a' + 26
+                          : c >= '0' && c <= '9' ? c - '0' + 52
+                          : c == '+'             ? 62
+                          : c == '/'             ? 63
+                                                 : -1;
         if (digit < 0)
             throw i;
         group = group << 6 | static_cast<std::uint32_t>(digit);
@@ -54,7 +62,8 @@ fs::path path_of(const std::string& uri, const std::string& file)
     return !fs::exists(decoded, error) && fs::exists(folder / uri, error) ? folder / uri : decoded;
 }
 
-// The library says "[json.exception.parse_error.101] parse error at line 1, column 2: <why>; last read: '<some of the file>'; expected ...".
+// The library says "[json.exception.parse_error.101] parse error at line 1, column 2: <why>; last read: '<some of the
+// file>'; expected ...".
 std::string reason_of(const nlohmann::json::exception& error)
 {
     std::string what = error.what();
@@ -89,16 +98,23 @@ std::string percent_decoded(std::string_view uri)
 {
     std::string out;
     for (std::size_t i = 0; i < uri.size(); ++i) {
-        const int high = uri[i] == '%' && i + 2 < uri.size() ? hex_digit(uri[i + 1]) : -1, low = high < 0 ? -1 : hex_digit(uri[i + 2]);
+        const int high = uri[i] == '%' && i + 2 < uri.size() ? hex_digit(uri[i + 1]) : -1,
+                  low = high < 0 ? -1 : hex_digit(uri[i + 2]);
         out += low < 0 ? uri[i] : static_cast<char>(16 * high + low);
         i += low < 0 ? 0 : 2;
     }
     return out;
 }
 
-void GltfValue::fail(const std::string& reason) const { throw InputError::in_file(*file_, (place_.empty() ? "" : named() + " ") + reason); }
+void GltfValue::fail(const std::string& reason) const
+{
+    throw InputError::in_file(*file_, (place_.empty() ? "" : named() + " ") + reason);
+}
 
-void GltfValue::expected(const char* what) const { fail(std::string("is ") + json_->type_name() + ", expected " + what); }
+void GltfValue::expected(const char* what) const
+{
+    fail(std::string("is ") + json_->type_name() + ", expected " + what);
+}
 
 std::string GltfValue::named() const
 {
@@ -186,7 +202,10 @@ std::optional<std::size_t> GltfValue::index_of(const char* key) const
     return found ? std::optional(found->index()) : std::nullopt;
 }
 
-std::size_t GltfValue::index_or(const char* key, std::size_t otherwise) const { return index_of(key).value_or(otherwise); }
+std::size_t GltfValue::index_or(const char* key, std::size_t otherwise) const
+{
+    return index_of(key).value_or(otherwise);
+}
 
 std::string GltfValue::text_or(const char* key, const std::string& otherwise) const
 {
@@ -256,11 +275,14 @@ void GltfDocument::split_binary(std::string_view bytes, std::string_view& text)
         const std::string_view kind = bytes.substr(at + 4, 4);
         at += 8;
         if (size > length - at)
-            fail("has a chunk of " + std::to_string(size) + " bytes at byte " + std::to_string(at - 8) + "; " + std::to_string(length - at) + " are left");
+            fail("has a chunk of " + std::to_string(size) + " bytes at byte " + std::to_string(at - 8) + "; " +
+                 std::to_string(length - at) + " are left");
         if (first && kind != "JSON")
             fail("begins with a chunk that is not JSON");
         if (first) {
             text = bytes.substr(at, size);
+            while (text.ends_with('\0')) // padding is blanks; some programs write zeros
+                text.remove_suffix(1);
         } else if (!has_binary_chunk_ && kind == std::string_view("BIN\0", 4)) {
             binary_chunk_ = bytes.substr(at, size);
             has_binary_chunk_ = true;
@@ -280,7 +302,8 @@ std::size_t GltfDocument::count(const char* list) const
 GltfValue GltfDocument::at(const char* list, std::size_t i) const
 {
     if (i >= count(list))
-        throw InputError::in_file(file_, std::string(list) + "[" + std::to_string(i) + "] does not exist; there are " + std::to_string(count(list)));
+        throw InputError::in_file(file_, std::string(list) + "[" + std::to_string(i) +
+                                             "] does not exist; there are " + std::to_string(count(list)));
     return root()[list][i];
 }
 

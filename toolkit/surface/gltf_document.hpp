@@ -18,7 +18,10 @@ class GltfValue {
 public:
     using Json = nlohmann::json;
 
-    GltfValue(const std::string& file, const Json& json, std::string place) : file_(&file), json_(&json), place_(std::move(place)) {}
+    GltfValue(const std::string& file, const Json& json, std::string place)
+        : file_(&file), json_(&json), place_(std::move(place))
+    {
+    }
 
     /// "nodes[3]", for messages; with the name that the file gives it, if any: "nodes[3] 'hand'".
     const std::string& place() const { return place_; }
@@ -61,7 +64,8 @@ public:
 
     const std::string& file() const { return file_; }
     GltfValue root() const { return {file_, root_, ""}; }
-    /// The number of elements of a list at the top: "nodes", "meshes", ...; and one of them, an error where there is none.
+    /// The number of elements of a list at the top: "nodes", "meshes", ...; and one of them, an error where there is
+    /// none.
     std::size_t count(const char* list) const;
     GltfValue at(const char* list, std::size_t i) const;
 

@@ -8,18 +8,30 @@
 namespace cinch {
 namespace {
 
-// Modelled wherever they are allowed: quantised positions are read as any integers are; hidden nodes are not drawn; pointers at nodes
-// are channels.
-constexpr std::string_view modelled_when_required[] = {"KHR_mesh_quantization", "KHR_node_visibility", "KHR_animation_pointer"};
+// Modelled wherever they are allowed: quantised positions are read as any integers are; hidden nodes are not drawn;
+// pointers at nodes are channels.
+constexpr std::string_view modelled_when_required[] = {"KHR_mesh_quantization", "KHR_node_visibility",
+                                                       "KHR_animation_pointer"};
 
 constexpr std::string_view harmless_beginnings[] = {
-    "KHR_materials_", "EXT_materials_", "ADOBE_materials_", "VRMC_materials_", "KHR_texture_", "EXT_texture_", "MSFT_texture_", "MSFT_packing_",
-    "KHR_lights_", "EXT_lights_", "KHR_xmp", "KHR_audio", "MSFT_audio_"};
+    "KHR_materials_", "EXT_materials_", "ADOBE_materials_", "VRMC_materials_", "KHR_texture_",
+    "EXT_texture_",   "MSFT_texture_",  "MSFT_packing_",    "KHR_lights_",     "EXT_lights_",
+    "KHR_xmp",        "KHR_audio",      "MSFT_audio_"};
 
-constexpr std::string_view harmless[] = {
-    "AGI_stk_metadata", "CESIUM_primitive_outline", "EXT_feature_metadata", "EXT_instance_features", "EXT_mesh_features", "EXT_mesh_manifold",
-    "EXT_mesh_primitive_edge_visibility", "EXT_structural_metadata", "FB_ngon_encoding", "GODOT_single_root", "KHR_environment_map",
-    "KHR_node_hoverability", "KHR_node_selectability", "MOZ_lightmap"};
+constexpr std::string_view harmless[] = {"AGI_stk_metadata",
+                                         "CESIUM_primitive_outline",
+                                         "EXT_feature_metadata",
+                                         "EXT_instance_features",
+                                         "EXT_mesh_features",
+                                         "EXT_mesh_manifold",
+                                         "EXT_mesh_primitive_edge_visibility",
+                                         "EXT_structural_metadata",
+                                         "FB_ngon_encoding",
+                                         "GODOT_single_root",
+                                         "KHR_environment_map",
+                                         "KHR_node_hoverability",
+                                         "KHR_node_selectability",
+                                         "MOZ_lightmap"};
 
 void refuse_compression(const std::string& name, const GltfValue& place)
 {
@@ -75,7 +87,9 @@ void note_extensions_of_file(const GltfDocument& document, Missing& missing)
         for (std::size_t i = 0; i < required->size(); ++i) {
             const std::string& name = (*required)[i].text();
             refuse_compression(name, root);
-            if (!is_harmless_extension(name) && std::find(std::begin(modelled_when_required), std::end(modelled_when_required), name) == std::end(modelled_when_required))
+            if (!is_harmless_extension(name) &&
+                std::find(std::begin(modelled_when_required), std::end(modelled_when_required), name) ==
+                    std::end(modelled_when_required))
                 missing.add("the extension " + one_line(name), "required");
         }
     note_extensions(root, missing);

@@ -24,12 +24,12 @@ private:
     std::vector<Entry> entries_;
 };
 
-/// Whether an extension of this name cannot move a vertex, nor change what is drawn, wherever it stands: materials, textures, lights,
-/// sound, metadata. Only such names are known; all others may.
+/// Whether an extension of this name cannot move a vertex, nor change what is drawn, wherever it stands: materials,
+/// textures, lights, sound, metadata. Only such names are known; all others may.
 bool is_harmless_extension(std::string_view name);
 
-/// Adds the extensions of a value to what is missing, but for harmless ones and those named in `modelled`. Throws InputError for
-/// compression.
+/// Adds the extensions of a value to what is missing, but for harmless ones and those named in `modelled`. Throws
+/// InputError for compression.
 void note_extensions(const GltfValue& value, Missing& missing, std::initializer_list<std::string_view> modelled = {});
 
 /// The same for what the file requires, and has at its top.

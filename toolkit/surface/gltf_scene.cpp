@@ -34,7 +34,8 @@ std::vector<std::int64_t> parents(const GltfDocument& document)
     for (std::size_t i = 0; i < count; ++i) {
         path.clear();
         auto at = static_cast<std::int64_t>(i);
-        for (; at >= 0 && !rooted[static_cast<std::size_t>(at)] && path.size() <= count; at = parent[static_cast<std::size_t>(at)])
+        for (; at >= 0 && !rooted[static_cast<std::size_t>(at)] && path.size() <= count;
+             at = parent[static_cast<std::size_t>(at)])
             path.push_back(static_cast<std::size_t>(at));
         if (path.size() > count)
             document.at("nodes", i).fail("is its own ancestor, or has one that is");
@@ -56,11 +57,12 @@ bool is_hidden(const GltfValue& node)
 bool is_affine(const double* row3, std::size_t stride)
 {
     constexpr double rounding = 1e-5;
-    return std::abs(row3[0]) <= rounding && std::abs(row3[stride]) <= rounding && std::abs(row3[2 * stride]) <= rounding && std::abs(row3[3 * stride] - 1) <= rounding;
+    return std::abs(row3[0]) <= rounding && std::abs(row3[stride]) <= rounding &&
+           std::abs(row3[2 * stride]) <= rounding && std::abs(row3[3 * stride] - 1) <= rounding;
 }
 
-// Translation, rotation and scale of a matrix; false where it has a mirror, a shear, or a scale of 0, where they are not unique. Angles
-// between columns are right to the rounding of programs that multiply a few matrices in binary32.
+// Translation, rotation and scale of a matrix; false where it has a mirror, a shear, or a scale of 0, where they are
+// not unique. Angles between columns are right to the rounding of programs that multiply a few matrices in binary32.
 bool take_apart(Bone& bone)
 {
     constexpr double rounding = 1e-5;
@@ -73,8 +75,8 @@ bool take_apart(Bone& bone)
         bone.scale[static_cast<std::size_t>(c)] = length;
         axes.col(c) /= length;
     }
-    if (std::abs(axes.col(0).dot(axes.col(1))) > rounding || std::abs(axes.col(1).dot(axes.col(2))) > rounding || std::abs(axes.col(2).dot(axes.col(0))) > rounding ||
-        axes.determinant() < 0)
+    if (std::abs(axes.col(0).dot(axes.col(1))) > rounding || std::abs(axes.col(1).dot(axes.col(2))) > rounding ||
+        std::abs(axes.col(2).dot(axes.col(0))) > rounding || axes.determinant() < 0)
         return false;
     const Eigen::Quaterniond q(axes);
     bone.rotation = {q.x(), q.y(), q.z(), q.w()};
@@ -101,7 +103,9 @@ GltfScene read_scene(const GltfDocument& document, Missing& missing, std::vector
                     node.fail("is named by " + scene.named() + ", but it is a child of another node");
             }
         if (const std::size_t scenes = document.count("scenes"); scenes > 1)
-            notes.push_back(std::to_string(scenes) + " scenes; " + (wanted ? "the default one, " : "no default, so the first one, ") + scene.named() + ", is read");
+            notes.push_back(std::to_string(scenes) + " scenes; " +
+                            (wanted ? "the default one, " : "no default, so the first one, ") + scene.named() +
+                            ", is read");
     } else {
         for (std::size_t i = 0; i < out.parent.size(); ++i)
             if (out.parent[i] < 0)
@@ -127,15 +131,16 @@ GltfScene read_scene(const GltfDocument& document, Missing& missing, std::vector
 }
 
 GltfSkeleton::GltfSkeleton(GltfDocument& document, const GltfScene& scene, Missing& missing, Character& out)
-    : document_(document), scene_(scene), missing_(missing), out_(out), bone_of_node_(document.count("nodes"), none), first_joint_(document.count("skins"), none),
-      joint_count_(first_joint_.size(), 0)
+    : document_(document), scene_(scene), missing_(missing), out_(out), bone_of_node_(document.count("nodes"), none),
+      first_joint_(document.count("skins"), none), joint_count_(first_joint_.size(), 0)
 {
 }
 
 std::uint32_t GltfSkeleton::add_bone(std::size_t node)
 {
     std::vector<std::size_t> path; // up to what is there already
-    for (auto at = static_cast<std::int64_t>(node); at >= 0 && bone_of_node_[static_cast<std::size_t>(at)] == none; at = scene_.parent[static_cast<std::size_t>(at)])
+    for (auto at = static_cast<std::int64_t>(node); at >= 0 && bone_of_node_[static_cast<std::size_t>(at)] == none;
+         at = scene_.parent[static_cast<std::size_t>(at)])
         path.push_back(static_cast<std::size_t>(at));
     for (; !path.empty(); path.pop_back()) {
         const std::size_t i = path.back();
@@ -194,7 +199,8 @@ std::uint32_t GltfSkeleton::first_joint(std::size_t skin)
         Joint joint{add_bone(node), identity_map};
         if (!bind.empty()) {
             if (!is_affine(&bind[16 * j + 3], 4))
-                value.fail("has an inverse bind matrix, of joint " + std::to_string(j) + ", whose last row is not (0, 0, 0, 1)");
+                value.fail("has an inverse bind matrix, of joint " + std::to_string(j) +
+                           ", whose last row is not (0, 0, 0, 1)");
             for (std::size_t r = 0; r < 3; ++r)
                 for (std::size_t c = 0; c < 4; ++c)
                     joint.inverse_bind.m[r][c] = bind[16 * j + 4 * c + r]; // column-major

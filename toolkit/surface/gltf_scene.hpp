@@ -13,8 +13,8 @@ struct GltfScene {
     std::vector<char> visible;        ///< of these: neither they nor a parent of theirs are hidden
 };
 
-/// The default scene; the first one where none is named, and all nodes where there is no scene. Throws InputError for a node with two parents
-/// or that is its own ancestor, and for a scene that names a child.
+/// The default scene; the first one where none is named, and all nodes where there is no scene. Throws InputError for
+/// a node with two parents or that is its own ancestor, and for a scene that names a child.
 GltfScene read_scene(const GltfDocument& document, Missing& missing, std::vector<std::string>& notes);
 
 /// The joints that deform the surface, and the nodes that move them.
@@ -24,7 +24,8 @@ public:
 
     GltfSkeleton(GltfDocument& document, const GltfScene& scene, Missing& missing, Character& out);
 
-    /// The first of a skin's joints among Character::joints, which are made where they are not there yet; and how many it has.
+    /// The first of a skin's joints among Character::joints, which are made where they are not there yet; and how
+    /// many it has.
     std::uint32_t first_joint(std::size_t skin);
     std::uint32_t joint_count(std::size_t skin) const { return joint_count_[skin]; }
     /// The bone of a node, or none.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A glTF 2.0 file as a skinned character. The order of the work: what the file requires, the scene, skins, meshes, animations.
+// A glTF 2.0 file as a skinned character. The order of the work: what the file requires, the scene, skins, meshes,
+// animations.
 #include <algorithm>
 #include <map>
 #include <set>
@@ -32,7 +33,8 @@ std::vector<Triangle> triangles_of(const std::vector<std::uint32_t>& order, std:
     return out;
 }
 
-// Attributes that cannot move a vertex: those of shading, and an application's own. POSITION, JOINTS and WEIGHTS are read.
+// Attributes that cannot move a vertex: those of shading, and an application's own. POSITION, JOINTS and WEIGHTS are
+// read.
 bool is_known_attribute(const std::string& name)
 {
     if (name == "POSITION" || name == "NORMAL" || name == "TANGENT" || name.starts_with('_'))
@@ -43,7 +45,10 @@ bool is_known_attribute(const std::string& name)
     return false;
 }
 
-bool is_drawn(const GltfValue& primitive) { return primitive["attributes"].has("POSITION"); } // the specification: else there is nothing to draw
+bool is_drawn(const GltfValue& primitive)
+{
+    return primitive["attributes"].has("POSITION");
+} // the specification: else there is nothing to draw
 
 class SurfaceReader {
 public:
@@ -57,7 +62,8 @@ public:
     // The mesh that a node draws; its skin's joints are there already.
     void add(std::size_t node_index)
     {
-        const GltfValue node = document_.at("nodes", node_index), mesh = document_.at("meshes", node["mesh"].index()), primitives = mesh["primitives"];
+        const GltfValue node = document_.at("nodes", node_index), mesh = document_.at("meshes", node["mesh"].index()),
+                        primitives = mesh["primitives"];
         const auto skin = node.index_of("skin");
         note_extensions(mesh, missing_);
         bool drawn = false;
@@ -84,7 +90,9 @@ public:
     void finish()
     {
         if (without_position_)
-            out_.notes.push_back(std::to_string(without_position_) + (without_position_ == 1 ? " primitive" : " primitives") + " without positions left out: nothing to draw");
+            out_.notes.push_back(std::to_string(without_position_) +
+                                 (without_position_ == 1 ? " primitive" : " primitives") +
+                                 " without positions left out: nothing to draw");
     }
 
 private:
@@ -124,8 +132,8 @@ private:
         }
         for (const double index : read_accessor(document_, *indices, 1, missing_)) {
             if (!(index >= 0 && index < static_cast<double>(vertices)))
-                fail("vertex index " + std::to_string(static_cast<std::int64_t>(index)) + " is out of range; " + primitive.place() + " has " +
-                     std::to_string(vertices) + " vertices");
+                fail("vertex index " + std::to_string(static_cast<std::int64_t>(index)) + " is out of range; " +
+                     primitive.place() + " has " + std::to_string(vertices) + " vertices");
             order.push_back(static_cast<std::uint32_t>(index));
         }
         return order;
@@ -152,12 +160,14 @@ private:
             return;
         }
         for (std::size_t set = 0; 2 * set < sets; ++set) {
-            const std::size_t j = attributes[("JOINTS_" + std::to_string(set)).c_str()].index(), w = attributes[("WEIGHTS_" + std::to_string(set)).c_str()].index();
+            const std::size_t j = attributes[("JOINTS_" + std::to_string(set)).c_str()].index(),
+                              w = attributes[("WEIGHTS_" + std::to_string(set)).c_str()].index();
             joints.push_back(read_accessor(document_, j, 4, missing_));
             weights.push_back(read_accessor(document_, w, 4, missing_));
             out_.influences.step = std::max(out_.influences.step, step_of_accessor(document_, w));
             if (joints.back().size() != 4 * vertices || weights.back().size() != 4 * vertices)
-                primitive.fail("has " + std::to_string(vertices) + " positions but another number of joints or weights");
+                primitive.fail("has " + std::to_string(vertices) +
+                               " positions but another number of joints or weights");
         }
         std::vector<std::uint32_t> vertex_of(vertices);
         for (std::size_t k = 0; k < vertices; ++k)
@@ -166,8 +176,10 @@ private:
             out_.mesh.triangles.push_back({vertex_of[t[0]], vertex_of[t[1]], vertex_of[t[2]]});
     }
 
-    std::vector<std::pair<std::uint32_t, double>> influences_of(const GltfValue& primitive, std::size_t k, const std::vector<std::vector<double>>& joints,
-                                                                const std::vector<std::vector<double>>& weights, std::size_t skin)
+    std::vector<std::pair<std::uint32_t, double>> influences_of(const GltfValue& primitive, std::size_t k,
+                                                                const std::vector<std::vector<double>>& joints,
+                                                                const std::vector<std::vector<double>>& weights,
+                                                                std::size_t skin)
     {
         const std::uint32_t first = skeleton_.first_joint(skin), count = skeleton_.joint_count(skin);
         std::map<std::uint32_t, double> sum; // a joint may be named twice; zero-weight slots are padding
@@ -179,19 +191,22 @@ private:
                 if (weight == 0)
                     continue;
                 if (!(joints[set][i] >= 0 && joints[set][i] < count))
-                    fail("vertex " + std::to_string(k) + " of " + primitive.place() + " names joint " + std::to_string(static_cast<std::int64_t>(joints[set][i])) +
-                         "; skin " + std::to_string(skin) + " has " + std::to_string(count));
+                    fail("vertex " + std::to_string(k) + " of " + primitive.place() + " names joint " +
+                         std::to_string(static_cast<std::int64_t>(joints[set][i])) + "; skin " +
+                         std::to_string(skin) + " has " + std::to_string(count));
                 sum[first + static_cast<std::uint32_t>(joints[set][i])] += weight;
             }
         if (sum.empty()) // bound to nothing; the first joint named keeps it in place, and the load report counts it
-            sum[first + static_cast<std::uint32_t>(std::clamp(joints[0][4 * k], 0.0, static_cast<double>(count - 1)))] = 0;
+            sum[first +
+                static_cast<std::uint32_t>(std::clamp(joints[0][4 * k], 0.0, static_cast<double>(count - 1)))] = 0;
         return {sum.begin(), sum.end()};
     }
 
     std::uint32_t weld(const double* point, std::vector<std::pair<std::uint32_t, double>> influences)
     {
         const std::array<double, 3> key{point[0] + 0.0, point[1] + 0.0, point[2] + 0.0}; // -0 and 0 are one place
-        const auto [it, is_new] = welded_.try_emplace({key, influences}, static_cast<std::uint32_t>(out_.mesh.vertices.size()));
+        const auto [it, is_new] =
+            welded_.try_emplace({key, influences}, static_cast<std::uint32_t>(out_.mesh.vertices.size()));
         if (is_new) {
             out_.mesh.vertices.emplace_back(key[0], key[1], key[2]);
             for (const auto& [node, weight] : influences) {
@@ -235,7 +250,9 @@ void read(GltfDocument& document, Missing& missing, Character& out)
     if (hidden)
         out.notes.push_back(std::to_string(hidden) + (hidden == 1 ? " hidden mesh" : " hidden meshes") + " left out");
     if (skins.empty())
-        throw InputError::in_file(out.file, "draws no mesh that a skin deforms in its default scene; for a plain mesh export OBJ, OFF, PLY or STL");
+        throw InputError::in_file(
+            out.file,
+            "draws no mesh that a skin deforms in its default scene; for a plain mesh export OBJ, OFF, PLY or STL");
     for (const std::size_t skin : skins)
         skeleton.first_joint(skin);
     SurfaceReader surface(document, skeleton, missing, out);
@@ -252,7 +269,9 @@ void require_whole(Character& character)
         throw InputError::in_file(character.file, "has " + not_modelled(character.missing));
     auto require = [&](Character::Animation& animation) {
         if (animation.fault.empty() && !animation.missing.empty())
-            animation.fault = InputError::in_file(character.file, "clip '" + animation.name + "' has " + not_modelled(animation.missing)).what();
+            animation.fault = InputError::in_file(character.file, "clip '" + animation.name + "' has " +
+                                                                      not_modelled(animation.missing))
+                                  .what();
     };
     require(character.rest);
     for (Character::Animation& animation : character.animations)
@@ -281,6 +300,9 @@ Character parse_gltf(std::string_view bytes, const std::string& file, Coverage c
     return out;
 }
 
-Character read_gltf(const std::filesystem::path& path, Coverage coverage) { return parse_gltf(read_bytes(path), path.string(), coverage); }
+Character read_gltf(const std::filesystem::path& path, Coverage coverage)
+{
+    return parse_gltf(read_bytes(path), path.string(), coverage);
+}
 
 } // namespace cinch

@@ -49,7 +49,8 @@ Quad evaluate(const Curve& curve, double t)
     if (cubic) {
         const double s2 = s * s, s3 = s2 * s;
         const Quad ends = combine(2 * s3 - 3 * s2 + 1, value_at(key), -2 * s3 + 3 * s2, value_at(key + 1));
-        const Quad tangents = combine(span * (s3 - 2 * s2 + s), curve.value[3 * key + 2], span * (s3 - s2), curve.value[3 * key + 3]);
+        const Quad tangents =
+            combine(span * (s3 - 2 * s2 + s), curve.value[3 * key + 2], span * (s3 - s2), curve.value[3 * key + 3]);
         return combine(1, ends, 1, tangents);
     }
     if (curve.target == Curve::Target::rotation)
@@ -90,7 +91,10 @@ struct Motion {
     double first, last;
     std::size_t steps; // from the first frame to the last
 
-    double time_s(std::size_t i) const { return i == steps ? last : first + (last - first) * static_cast<double>(i) / static_cast<double>(steps); }
+    double time_s(std::size_t i) const
+    {
+        return i == steps ? last : first + (last - first) * static_cast<double>(i) / static_cast<double>(steps);
+    }
 
     Clip::Frame frame(double t) const
     {
@@ -115,7 +119,9 @@ struct Motion {
             for (int r = 0; r < 3; ++r)
                 for (int c = 0; c < 4; ++c) {
                     if (!std::isfinite(m(r, c)))
-                        throw InputError::in_file(file, "clip '" + name + "' at " + std::to_string(t) + " s: the matrix of joint " + std::to_string(maps.size()) + " overflows");
+                        throw InputError::in_file(file, "clip '" + name + "' at " + std::to_string(t) +
+                                                            " s: the matrix of joint " + std::to_string(maps.size()) +
+                                                            " overflows");
                     map.m[r][c] = m(r, c);
                 }
             maps.push_back(map);
@@ -136,12 +142,15 @@ Clip sample(const Character& character, const Character::Animation& animation, d
     const double length = animation.last_s - animation.first_s;
     constexpr double most_frames = 1e12;
     if (!(length * fps < most_frames - 1))
-        throw InputError::in_file(character.file, "clip '" + animation.name + "' lasts " + std::to_string(length) +
-                                                      " s, a million million frames at this rate; lower the frames per second");
+        throw InputError::in_file(character.file,
+                                  "clip '" + animation.name + "' lasts " + std::to_string(length) +
+                                      " s, a million million frames at this rate; lower the frames per second");
     const auto steps = static_cast<std::size_t>(std::max(length > 0 ? 1.0 : 0.0, std::round(length * fps)));
-    auto motion = std::make_shared<const Motion>(
-        Motion{character.file, animation.name, character.bones, character.joints, animation.curves, animation.first_s, animation.last_s, steps});
-    return {animation.name, steps + 1, [motion](std::size_t i) { return motion->time_s(i); }, [motion](std::size_t i) { return motion->frame(motion->time_s(i)); }};
+    auto motion =
+        std::make_shared<const Motion>(Motion{character.file, animation.name, character.bones, character.joints,
+                                              animation.curves, animation.first_s, animation.last_s, steps});
+    return {animation.name, steps + 1, [motion](std::size_t i) { return motion->time_s(i); },
+            [motion](std::size_t i) { return motion->frame(motion->time_s(i)); }};
 }
 
 std::string not_modelled(const std::vector<std::string>& missing)

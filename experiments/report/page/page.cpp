@@ -77,7 +77,7 @@ std::string partial_notice(const Results& results)
 {
     std::vector<std::string> missing;
     for (const Record& record : results.all())
-        if (const auto names = record.fields.find("missing"); record.fields.value("partial", false) && names != record.fields.end() && names->is_array())
+        if (const auto names = record.fields.find("missing"); names != record.fields.end() && names->is_array())
             for (const auto& name : *names)
                 if (name.is_string() && std::find(missing.begin(), missing.end(), name.get<std::string>()) == missing.end())
                     missing.push_back(name.get<std::string>());
