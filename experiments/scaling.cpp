@@ -11,6 +11,7 @@
 #include "experiments/measure/race.hpp"
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/number.hpp"
+#include "experiments/report/or_leave.hpp"
 #include "experiments/report/paper_figures.hpp"
 #include "experiments/report/progress.hpp"
 #include "experiments/report/table.hpp"
@@ -162,7 +163,7 @@ int scaling_of(const ScalingOptions& options, const Provenance& from, RecordOutp
             throw_if_interrupted();
             if (!fixed) {
                 what.nodes = node_counts[i];
-                input = load_input(what);
+                input = or_leave([what] { return load_input(what); });
             }
             const Times times = options.precision == Precision::float32 ? measure<float>(input, options) : measure<double>(input, options);
             for (const std::string& name : contestants)
@@ -213,7 +214,7 @@ int scaling(const ScalingOptions& options)
                 what.nodes = node_counts[n];
                 what.frames = 1;
                 what.seed = options.seed;
-                const Input input = load_input(what);
+                const Input input = or_leave([what] { return load_input(what); });
                 times[v][n] = options.precision == Precision::float32 ? measure<float>(input, options) : measure<double>(input, options);
                 for (const std::string& name : contestants)
                     records.push_back({{"experiment", "scaling"}, {"method", name}, {"precision", name_of(options.precision)}, {"n", node_counts[n]},

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
@@ -13,6 +14,7 @@
 #include "experiments/measure/race.hpp"
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/number.hpp"
+#include "experiments/report/or_leave.hpp"
 #include "experiments/report/progress.hpp"
 #include "experiments/report/table.hpp"
 #include "toolkit/surface/input_error.hpp"
@@ -66,34 +68,46 @@ void add_frame(const Bvh& bvh, std::span<const double> truth, std::span<const do
     }
 }
 
+// What refits and verifies an input; owns or shares all that it reads.
+struct Prepared {
+    Prepared(std::shared_ptr<const Input> shared, const TightnessOptions& options, bool attribute)
+        : input(std::move(shared)), bvh(build_bvh(input->surface, options.leaf)), vertices(bvh, input->surface, {Method::vertices, 6, Rounding::plain})
+    {
+        if (attribute)
+            verifier.emplace(input->surface, bvh, throw_if_interrupted);
+        for (const Methods methods : options.methods) {
+            throw_if_interrupted();
+            refits.emplace_back(bvh, input->surface, RefitOptions{methods, 6, Rounding::proven, options.precision, options.passes});
+        }
+    }
+    std::shared_ptr<const Input> input;
+    Bvh bvh;
+    Refitter vertices;
+    std::optional<exact::Verifier> verifier;
+    std::vector<Refitter> refits;
+};
+
 // Ratios of every level and method; with `attribute` also by the exact verifier what is lost where. Frame by frame, so that after an interrupt all
 // methods have the same ones.
-Run measure(const Input& input, const TightnessOptions& options, bool attribute, bool& violated)
+Run measure(const std::shared_ptr<const Input>& shared, const TightnessOptions& options, bool attribute, bool& violated)
 {
+    const Input& input = *shared;
     const std::size_t frames = input.clip.frames.size();
     Run run{input.clip.name, input.surface.weights.node_count, 0, frames, {}};
     Progress progress(fmt::format("{} nodes, '{}'", run.nodes, run.motion), options.methods.size() * frames);
     try {
-        const Bvh bvh = build_bvh(input.surface, options.leaf);
+        const std::unique_ptr<Prepared> prepared = or_leave([=] { return std::make_unique<Prepared>(shared, options, attribute); });
+        const Bvh& bvh = prepared->bvh;
         std::vector<double> truth(bvh.bvs.size() * 6), supports(truth);
-        std::optional<exact::Verifier> verifier;
-        if (attribute)
-            verifier.emplace(input.surface, bvh, throw_if_interrupted);
-        Refitter vertices(bvh, input.surface, {Method::vertices, 6, Rounding::plain});
-        std::vector<Refitter> refits;
-        for (const Methods methods : options.methods) {
-            throw_if_interrupted();
-            refits.emplace_back(bvh, input.surface, RefitOptions{methods, 6, Rounding::proven, options.precision, options.passes});
-        }
         for (std::size_t f = 0; f < frames; ++f) {
             std::map<std::string, std::vector<LevelRatio>> now = run.levels; // kept if the frame is whole
-            vertices(input.clip.frames[f], truth);
+            prepared->vertices(input.clip.frames[f], truth);
             for (std::size_t m = 0; m < options.methods.size(); ++m) {
                 throw_if_interrupted();
-                refits[m](input.clip.frames[f], supports);
+                prepared->refits[m](input.clip.frames[f], supports);
                 std::optional<exact::FrameVerdict> verdict;
-                if (verifier) {
-                    verdict = verifier->check(input.clip.frames[f], options.methods[m], 6, supports);
+                if (attribute) {
+                    verdict = prepared->verifier->check(input.clip.frames[f], options.methods[m], 6, supports);
                     violated |= !verdict->examples.empty();
                 }
                 add_frame(bvh, truth, supports, verdict ? &*verdict : nullptr, now[name_of(options.methods[m])]);
@@ -199,13 +213,18 @@ struct Measured {
     }
 };
 
+std::shared_ptr<const Input> load(const InputOptions& what)
+{
+    return or_leave([what] { return std::make_shared<const Input>(load_input(what)); });
+}
+
 void measure_all(const TightnessOptions& options, Measured& measured)
 {
     InputOptions what = options.input;
     for (const std::string& motion : measured.motions) {
         throw_if_interrupted();
         what.motion = motion;
-        measured.keep(measure(load_input(what), options, true, measured.violated), measured.full);
+        measured.keep(measure(load(what), options, true, measured.violated), measured.full);
     }
     TightnessOptions coarse = options;
     coarse.leaf = std::max<std::size_t>(options.leaf, 16); // what counts here is the upper levels
@@ -213,7 +232,7 @@ void measure_all(const TightnessOptions& options, Measured& measured)
     for (const std::size_t nodes : measured.nodes) {
         throw_if_interrupted();
         what.nodes = nodes;
-        measured.keep(measure(load_input(what), coarse, false, measured.violated), measured.sweep);
+        measured.keep(measure(load(what), coarse, false, measured.violated), measured.sweep);
     }
 }
 

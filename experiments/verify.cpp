@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <memory>
 #include <optional>
 
 #include <fmt/format.h>
@@ -14,6 +15,7 @@
 #include "exact/certificate.hpp"
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/line_file.hpp"
+#include "experiments/report/or_leave.hpp"
 #include "experiments/report/progress.hpp"
 #include "experiments/report/whole_file.hpp"
 #include "experiments/verify_lazy.hpp"
@@ -55,6 +57,7 @@ public:
     {
         rungs_[0](maps, looser_);
         for (std::size_t r = 1; r < rungs_.size(); ++r) {
+            throw_if_interrupted();
             rungs_[r](maps, tighter_);
             for (std::size_t i = 0; i < looser_.size(); ++i)
                 totals.broken += !(tighter_[i] <= looser_[i]);
@@ -95,21 +98,48 @@ void explain_last_frame(const Input& input, const Bvh& bvh, const VerifyOptions&
         }
 }
 
-// Refits and proves every BV of one body in every frame, on top of what `totals` has. An interrupt ends it between two frames: `totals` has whole ones.
-void verify_body(const Input& input, const VerifyOptions& options, LineFile* certificate, VerifyTotals& totals)
+RefitOptions refit_options(const VerifyOptions& options)
 {
-    Bvh bvh = build_bvh(input.surface, options.leaf);
-    damage(bvh, options.sabotage);
     const Rounding rounding = options.sabotage == Sabotage::no_rounding ? Rounding::plain : Rounding::proven;
-    const exact::Verifier verifier(input.surface, bvh, throw_if_interrupted);
-    const RefitOptions refit_options{options.methods, options.kdop, rounding, options.precision, options.passes, options.rest_shape, options.remember};
-    Refitter refit(bvh, input.surface, refit_options);
-    throw_if_interrupted();
-    Ladder ladder(bvh, input.surface, refit_options);
+    return {options.methods, options.kdop, rounding, options.precision, options.passes, options.rest_shape, options.remember};
+}
+
+Bvh damaged_bvh(const DeformableSurface& surface, const VerifyOptions& options)
+{
+    Bvh bvh = build_bvh(surface, options.leaf);
+    damage(bvh, options.sabotage);
+    return bvh;
+}
+
+// What refits and verifies a body of the inputs, which it shares.
+struct Prepared {
+    Prepared(std::shared_ptr<const Inputs> shared, const Input& input, const VerifyOptions& options)
+        : inputs(std::move(shared)), bvh(damaged_bvh(input.surface, options)), verifier(input.surface, bvh, throw_if_interrupted), refit(bvh, input.surface, refit_options(options)),
+          ladder(bvh, input.surface, refit_options(options))
+    {
+    }
+    std::shared_ptr<const Inputs> inputs;
+    Bvh bvh;
+    exact::Verifier verifier;
+    Refitter refit;
+    Ladder ladder;
+};
+
+// Refits and proves every BV of one body in every frame, on top of what `totals` has. An interrupt ends it between two frames: `totals` has whole ones.
+void verify_body(const std::shared_ptr<const Inputs>& inputs, const Input& input, const VerifyOptions& options, LineFile* certificate, VerifyTotals& totals)
+{
+    const std::unique_ptr<Prepared> prepared = or_leave([inputs, &input, options] { return std::make_unique<Prepared>(inputs, input, options); });
+    const Bvh& bvh = prepared->bvh;
+    const exact::Verifier& verifier = prepared->verifier;
+    Refitter& refit = prepared->refit;
+    Ladder& ladder = prepared->ladder;
     totals.packed_bytes += refit.bytes();
     totals.rest_bytes += bvh.bytes();
 
-    const exact::LineSink write = [&](std::string_view text) { certificate->line(text); };
+    const exact::LineSink write = [&](std::string_view text) {
+        throw_if_interrupted(); // then none is written
+        certificate->line(text);
+    };
     if (certificate)
         exact::certify_rest(input.surface, bvh, options.methods, options.kdop, input.clip.frames.size(), write, options.rest_shape);
 
@@ -159,7 +189,8 @@ int verify(const VerifyOptions& given)
     std::optional<LineFile> certificate;
     if (!options.certificate.empty())
         certificate.emplace(options.certificate);
-    const Inputs inputs = load_inputs(options.input);
+    const auto shared = std::make_shared<const Inputs>(load_inputs(options.input));
+    const Inputs& inputs = *shared;
     if (inputs.bodies.size() > 1 && (!options.certificate.empty() || !options.vipr.empty()))
         throw InputError("--certificate and --vipr are of one body; --body chooses it");
     VerifyTotals totals;
@@ -180,7 +211,7 @@ int verify(const VerifyOptions& given)
             verify_lazy(inputs, options, totals, *lazy);
         for (const Input& input : inputs.bodies)
             if (!lazy)
-                verify_body(input, options, certificate ? &*certificate : nullptr, totals);
+                verify_body(shared, input, options, certificate ? &*certificate : nullptr, totals);
     } catch (const Interrupted&) { // what is in `totals` is kept
     }
     const Completeness completeness = completeness_of(totals);

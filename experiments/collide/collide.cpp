@@ -7,6 +7,7 @@
 
 #include "experiments/collide/collide_tables.hpp"
 #include "experiments/report/interrupt.hpp"
+#include "experiments/report/or_leave.hpp"
 #include "experiments/simulation/find_scene.hpp"
 #include "toolkit/surface/input_error.hpp"
 
@@ -43,7 +44,7 @@ CollideScene load(const std::string& name, const CollideOptions& options)
     what.frames = options.frames;
     what.last_frames = true;
     what.seed = options.seed;
-    CollideScene scene{name, load_inputs(what).bodies};
+    CollideScene scene{name, or_leave([what] { return load_inputs(what).bodies; })};
     if (scene.bodies.size() < 2)
         throw InputError::in_file(name, "has one body; bodies are tested against each other, so it takes two");
     return scene;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/collide/own.hpp"
 
+#include "experiments/report/interrupt.hpp"
+
 namespace cinch {
 namespace {
 
@@ -9,8 +11,10 @@ public:
     Own(const CollideScene& scene, const LazyOptions& options, ClusterSize leaf) : scene_(scene), collider_(options), frames_(scene.bodies.size())
     {
         const RestDetail detail = options.methods.within(box_methods) ? RestDetail::boxes : RestDetail::inner;
-        for (const Input& body : scene.bodies) // the trees keep what they need
+        for (const Input& body : scene.bodies) { // the trees keep what they need
+            throw_if_interrupted();
             collider_.add(leaf.triangles == 1 ? build_bvh(body.surface, 1, detail) : build_bvh(body.surface, leaf, detail), body.surface);
+        }
     }
     void evaluate(std::size_t frame) override
     {

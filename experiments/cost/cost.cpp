@@ -10,6 +10,7 @@
 #include "experiments/measure/race.hpp"
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/number.hpp"
+#include "experiments/report/or_leave.hpp"
 #include "experiments/report/progress.hpp"
 #include "experiments/report/table.hpp"
 
@@ -176,7 +177,7 @@ int cost(const CostOptions& options)
             throw_if_interrupted();
             InputOptions what;
             what.input = shape;
-            step(dual_gaps(load_input(what), options.leaf), gaps);
+            step(dual_gaps(or_leave([what] { return load_input(what); }), options.leaf), gaps);
         }
         pin_to_one_core();
         for (const int kdop : options.kdops)

@@ -9,6 +9,7 @@
 #include <tbb/global_control.h>
 
 #include "experiments/report/interrupt.hpp"
+#include "experiments/report/or_leave.hpp"
 #include "experiments/report/progress.hpp"
 #include "experiments/report/table.hpp"
 #include "experiments/simulation/find_scene.hpp"
@@ -99,7 +100,7 @@ int cost_simulation(const CostSimulationOptions& options)
         Progress progress("simulating", wanted);
         Scene still = scene;
         still.duration_s = 0;
-        const Outcome start = run(still, found.file);
+        const Outcome start = or_leave([still, file = found.file] { return run(still, file); });
         for (const auto& [name, model] : energies) {
             for (SceneEffect& effect : scene.effects)
                 if (auto* elastic = std::get_if<ElasticSpec>(&effect.what))
@@ -107,10 +108,10 @@ int cost_simulation(const CostSimulationOptions& options)
             Scene fine = scene;
             fine.integration.method = Integration::Method::explicit_euler;
             fine.integration.safety = 0.02;
-            const Outcome reference = run(fine, found.file);
+            const Outcome reference = or_leave([fine, file = found.file] { return run(fine, file); });
             progress.done(++done);
             auto measure = [&](const char* integrator, const Scene& how, double step) {
-                const Outcome outcome = run(how, found.file);
+                const Outcome outcome = or_leave([how, file = found.file] { return run(how, file); });
                 rows.push_back({name, integrator, step > 0 ? step : scene.duration_s * static_cast<double>(scene.bodies.size()) / static_cast<double>(std::max<std::size_t>(outcome.steps, 1)),
                                 error_of(outcome, reference, start), outcome.seconds / scene.duration_s, outcome.steps, outcome.failure});
                 progress.done(++done);

@@ -7,6 +7,7 @@
 
 #include "experiments/input.hpp"
 #include "experiments/report/interrupt.hpp"
+#include "experiments/report/or_leave.hpp"
 #include "experiments/report/progress.hpp"
 #include "experiments/report/view.hpp"
 #include "experiments/report/view/grid.hpp"
@@ -257,7 +258,7 @@ nlohmann::ordered_json make_view(const ViewRequest& request)
     what.frames = request.frames - (what.first_frame ? 1 : 0);
     what.nodes = request.nodes;
     what.seed = request.seed;
-    const Inputs inputs = load_inputs(what);
+    const Inputs inputs = or_leave([what] { return load_inputs(what); });
 
     std::vector<DrawnBody> bodies;
     bodies.reserve(inputs.bodies.size());
