@@ -149,7 +149,7 @@ TEST_CASE("checkpoints continue only what they are of")
     refused("skin --resume " + folder.write("d", with_checksum(other)).string(), "was written by cinch 9");
     std::string edited = bytes_of(frames);
     edited[edited.size() / 2] ^= 1;
-    refused("skin --duration 0.3 --resume " + state + " --frames " + folder.write("edited", edited).string(), "is not what " + state + " continues");
+    refused("skin --duration 0.3 --resume " + state + " --frames " + folder.write("edited", edited).string(), "does not have the");
     CHECK(bytes_of(folder.path() / "edited") == edited);
     refused("skin --duration 0.1 --resume " + state + " --frames " + frames, "is at frame 18, and this run ends with frame 6");
     refused("skin --resume " + state + " --frames " + folder.write("short", "abc").string(), "does not have the");
