@@ -89,9 +89,11 @@ private:
         const std::uint64_t count = options_.cases ? std::min(block_cases, *options_.cases - first) : block_cases;
         std::vector<std::string> faults(count);
         tbb::parallel_for(tbb::blocked_range<std::uint64_t>(0, count, 64), [&](const auto& range) {
-            for (std::uint64_t i = range.begin(); i < range.end(); ++i)
+            for (std::uint64_t i = range.begin(); i < range.end() && !interrupted(); ++i)
                 faults[i] = find_fault(draw(first + i), options_.defect);
         });
+        if (interrupted())
+            return; // not all of it: a resumed run begins with it
         for (std::uint64_t i = 0; i < count; ++i)
             if (!faults[i].empty())
                 report(first + i);

@@ -7,6 +7,7 @@ passes for the whole. A full disk or a refusal: exit status 2 with one line, and
 
 import gzip
 import json
+import math
 import os
 import pathlib
 import random
@@ -17,7 +18,7 @@ import sys
 import tempfile
 import time
 
-PROGRAM = sys.argv[1]
+PROGRAM = os.path.abspath(sys.argv[1])
 MOMENTS = max(1, round(20 * min(1.0, float(os.environ.get("CINCH_TEST_SHARE", "1")))))
 OLD = b"what was there before\n"
 random.seed(7)
@@ -50,17 +51,30 @@ def is_whole_gzip(data):
 
 
 PAGE, CHART = ends_with(b"</html>\n"), ends_with(b"</svg>\n\n")
+BALL = pathlib.Path(tempfile.mkdtemp()) / "ball.obj"
 WRITERS = {
-    "verify": (["verify", "fish", "--nodes", "24", "--frames", "2", "--method", "eq12", "--leaf", "64", "--certificate", "c.jsonl.gz", "--vipr", "vipr", "--report", "page.html", "--plot", "chart.svg"],
+    "verify": (["verify", str(BALL), "--nodes", "12", "--frames", "2", "--method", "eq12", "--leaf", "16", "--certificate", "c.jsonl.gz", "--vipr", "vipr", "--report", "page.html", "--plot", "chart.svg"],
                {"page.html": PAGE, "chart.svg": CHART}),
-    "certificate": (["verify", "fish", "--nodes", "24", "--frames", "1", "--leaf", "16", "--certificate", "c.jsonl"], {}),
+    "certificate": (["verify", str(BALL), "--nodes", "24", "--frames", "20", "--certificate", "c.jsonl"], {}),
     "simulate": (["simulate", "twist-180", "--duration", "0.5", "--every", "2", "--frames", "frames", "--meshes", "meshes", "--checkpoint", "state", "--report", "page.html"],
                  {"page.html": PAGE}),
     "text frames": (["simulate", "skin", "--duration", "0.5", "--frames", "frames.jsonl"], {}),
-    "view": (["view", "fish", "--frames", "3", "--levels", "4", "--methods", "best,eq12", "--report", "page.html"], {}),
-    "cost": (["cost", "fish", "--frames", "1", "--kdops", "6", "--seconds", "0.05", "--this-input-only", "--report", "page.html", "--plot", "chart.svg"],
+    "view": (["view", str(BALL), "--nodes", "24", "--frames", "3", "--levels", "4", "--methods", "best,eq12", "--report", "page.html"], {}),
+    "cost": (["cost", str(BALL), "--nodes", "12", "--frames", "1", "--kdops", "6", "--seconds", "0.05", "--this-input-only", "--report", "page.html", "--plot", "chart.svg"],
              {"page.html": PAGE, "chart.svg": CHART}),
 }
+
+
+def write_ball(rings=16, around=20):
+    """A closed surface of a few hundred triangles."""
+    points = [(0, 0, 1), (0, 0, -1)] + [(math.cos(2 * math.pi * a / around) * math.sin(math.pi * r / rings), math.sin(2 * math.pi * a / around) * math.sin(math.pi * r / rings), math.cos(math.pi * r / rings))
+                                        for r in range(1, rings) for a in range(around)]
+    at = lambda r, a: 2 + (r - 1) * around + a % around
+    faces = [(0, at(1, a), at(1, a + 1)) for a in range(around)] + [(1, at(rings - 1, a + 1), at(rings - 1, a)) for a in range(around)]
+    for r in range(1, rings - 1):
+        for a in range(around):
+            faces += [(at(r, a), at(r + 1, a), at(r, a + 1)), (at(r, a + 1), at(r + 1, a), at(r + 1, a + 1))]
+    BALL.write_text("".join(f"v {x} {y} {z}\n" for x, y, z in points) + "".join(f"f {a + 1} {b + 1} {c + 1}\n" for a, b, c in faces))
 
 
 def with_old_outputs(folder, names):
@@ -208,8 +222,8 @@ def interrupted():
             out, err = out.decode(), err.decode()
             worst[name] = max(worst.get(name, 0), seconds)
             assert seconds < 2 * loaded(), (name, seconds)
-            if process.returncode == 0:
-                continue  # it had come to its end
+            if process.returncode == 0 or process.returncode == -signal.SIGINT and not out + err:
+                continue  # it had come to its end, or not to its beginning
             assert process.returncode == 130 and err.startswith("cinch: stopping …\n"), (name, process.returncode, err)
             if not json_too:
                 assert not out or "interrupted after" in out or arguments[0] == "fuzz" and "interrupted" in out, (name, out)
@@ -243,14 +257,16 @@ def at_once():
             seconds = time.monotonic() - sent
             assert seconds < 0.2 * loaded(), seconds
             assert process.returncode == 128 + first, process.returncode
-            assert files_of(folder) == before
+            after = files_of(folder)
+            assert after.keys() == before.keys() and after["c.jsonl"] == OLD, after.keys()
+            assert after["page.html"] == OLD or PAGE(after["page.html"]) and b"interrupted after" in after["page.html"]  # the results may have come first
         # SIGTERM once: as Ctrl-C, with a status of its own.
         process = subprocess.Popen([PROGRAM, "verify", "brain-3500", "--nodes", "60", "--frames", "2000", "--certificate", "c.jsonl"], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         time.sleep(2)
         process.terminate()
         out, err = process.communicate()
         assert process.returncode == 143 and "interrupted after" in out and "c.jsonl is not written" in err, (process.returncode, out, err)
-        assert files_of(folder) == before
+        assert files_of(folder) == after
         # A reader that goes away.
         process = subprocess.Popen([PROGRAM, "verify", "brain-3500", "--nodes", "60", "--json", "--report", "page.html"], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         process.stdout.close()
@@ -286,9 +302,11 @@ def statuses():
 
 if __name__ == "__main__":
     chosen = sys.argv[2:]
+    write_ball()
     for part in (statuses, over_an_input, on_a_full_disk, at_once, interrupted):
         if not chosen or part.__name__ in chosen:
             part()
     for name in WRITERS:
         if not chosen or name in chosen:
             killed(name)
+    shutil.rmtree(BALL.parent)
