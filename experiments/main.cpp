@@ -72,7 +72,7 @@ int main(int argc, char** argv)
                "  2    no verdict: bad usage or input, a full disk, too little memory\n"
                "  130  interrupted (Ctrl-C; 143 by SIGTERM): results so far are printed and say\n"
                "       that they are not all; a second Ctrl-C ends the command at once\n"
-               "Files appear when they are whole; until then NAME.XXXXXX.part stands beside them.");
+               "An output appears when it is whole; until then it is NAME.XXXXXX.part beside it.");
     ScalingOptions scaling_options;
 #ifdef CINCH_EXACT
     VerifyOptions verify_options;

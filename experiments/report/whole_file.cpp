@@ -248,10 +248,16 @@ WholeFile::~WholeFile()
     hide_from_handler(slot_);
     if (file_ >= 0)
         close(file_);
-    if (is_registered_) {
-        const std::lock_guard lock(known().mutex);
-        known().targets.erase(target_);
-    }
+    leave();
+}
+
+// Others may write there again.
+void WholeFile::leave()
+{
+    if (!std::exchange(is_registered_, false))
+        return;
+    const std::lock_guard lock(known().mutex);
+    known().targets.erase(target_);
 }
 
 void WholeFile::fail(int error) const { throw InputError::in_file(name_, because("cannot be written", error)); }
@@ -296,6 +302,7 @@ void WholeFile::commit()
     if (rename(part_.c_str(), target_.c_str()) != 0)
         fail(errno);
     part_.clear();
+    leave();
     hide_from_handler(std::exchange(slot_, -1));
     if (const int folder = open(fs::path(target_).parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); folder >= 0) {
         fsync(folder); // the name; where that cannot be done, it comes when the system sees fit

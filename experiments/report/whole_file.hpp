@@ -38,6 +38,7 @@ private:
     WholeFile() = default;
     bool open_directly(const std::filesystem::path& name);
     void enter(const std::filesystem::path& name);
+    void leave();
     void keep_mode() const;
     void flush();
     [[noreturn]] void fail(int error) const;
