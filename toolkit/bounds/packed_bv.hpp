@@ -31,7 +31,6 @@ template <class T> struct PackedBv {
     std::uint32_t first_node = 0;
     std::uint32_t also = 0;       ///< place of a second bound of the same BV to intersect with; 0 if there is none
     std::uint32_t guard = 0;      ///< place of the BV's Eq. 12, taken too where this bound may exceed it clearly (guard-inl.hpp); 0: never
-    std::uint32_t probe[2] = {};  ///< two of its simulation nodes, of a kind for many with a guard
     std::uint64_t first_value = 0;
     T centre[3] = {}, half[3] = {}; ///< rest box
     T axis[3][3] = {};              ///< and its axes instead of `half` if it is oriented

@@ -92,8 +92,8 @@ Trial calibrate(const Bvh& bvh, const DeformableSurface& surface, Method kind, s
     start.assign(bvs, 0.0);
     Trial best = attempt(packed, frames);
     for (const double candidate : {0.3, 0.5, 0.7, 0.8, 0.85, 0.9, 0.95, 1.0}) {
-        if (kind == Method::linear)
-            break; // no λ
+        if (kind == Method::linear || kind == Method::eq12)
+            break; // no λ to start
         for (PackedBv<double>& bv : packed.bvs)
             bv.start = candidate;
         const Trial trial = attempt(packed, frames);
@@ -143,6 +143,9 @@ std::vector<ChosenKind> choose_kinds(const Bvh& bvh, const DeformableSurface& su
             chosen[i].start = start[i];
         return chosen;
     }
+    Trial eq12;
+    if (std::vector<double> none; policy.guarded)
+        eq12 = calibrate(bvh, surface, Method::eq12, frames, none);
     constexpr Method kinds[] = {Method::linear, Method::support, Method::local};
     Trial trial[3];
     std::vector<double> start[3];
@@ -158,11 +161,23 @@ std::vector<ChosenKind> choose_kinds(const Bvh& bvh, const DeformableSurface& su
                 }
             return width;
         };
+        // Far below Eq. 12 in every direction of every frame, as the kind local is where its boxes are far smaller than the BV's.
+        auto far_below_eq12 = [&](std::size_t kind) {
+            for (std::size_t f = 0; f < frames.size(); ++f)
+                for (std::size_t d = 0; d < kdop; ++d) {
+                    const std::size_t first = (f * bvh.bvs.size() + i) * kdop;
+                    const double width = eq12.supports[first + d] + eq12.supports[first + (d ^ 1)];
+                    if (!(trial[kind].supports[first + d] <= eq12.supports[first + d] - 0.1 * width))
+                        return false;
+                }
+            return true;
+        };
         std::size_t best = 0;
         for (std::size_t k = 1; k < 3; ++k)
             if (trial[k].width[i] < trial[best].width[i])
                 best = k;
-        chosen[i] = {kinds[best], {}, start[best][i], 0, false, policy.guarded};
+        chosen[i] = {kinds[best], {}, start[best][i], 0, false, false};
+        chosen[i].guarded = policy.guarded && !(kinds[best] == Method::local && far_below_eq12(best));
         double width = policy.worth_twice * trial[best].width[i];
         for (std::size_t a = 0; a < 3; ++a)
             for (std::size_t b = a + 1; b < 3; ++b)

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
-#include <tuple>
-#include <utility>
 
 #include "toolkit/bounds/rounding.hpp"
 #include "toolkit/deform/dyadic.hpp"
@@ -280,18 +278,6 @@ private:
     std::vector<std::uint32_t> order_; // of the simulation nodes
 };
 
-// The simulation nodes of the greatest mean weights; twice the same where there is one only.
-std::pair<std::uint32_t, std::uint32_t> heaviest_two(const RestBv& rest)
-{
-    std::size_t first = 0, second = 0;
-    for (std::size_t j = 1; j < rest.node.size(); ++j)
-        if (rest.model[j].mean > rest.model[first].mean)
-            second = std::exchange(first, j);
-        else if (second == first || rest.model[j].mean > rest.model[second].mean)
-            second = j;
-    return {rest.node[first], rest.node[second]};
-}
-
 // On a grid so coarse that it is (0, 0, 0) unless the surface lies far from there.
 Vec3 rest_origin(const RestBox& root)
 {
@@ -345,11 +331,8 @@ template <class T> PackedBvh<T> pack(const Bvh& bvh, const DeformableSurface& su
         }
     for (std::size_t i = 0; i < bvh.bvs.size(); ++i)
         if (kinds[i].guarded && wanted(i)) {
-            const RestBv rest = bvh.rest(i);
-            PackedBv<T>& bv = out.bvs[leaves ? i : out.place[i]];
-            bv.guard = static_cast<std::uint32_t>(out.bvs.size());
-            std::tie(bv.probe[0], bv.probe[1]) = heaviest_two(rest);
-            packer.pack(rest, Method::eq12, 0, nullptr);
+            out.bvs[leaves ? i : out.place[i]].guard = static_cast<std::uint32_t>(out.bvs.size());
+            packer.pack(bvh.rest(i), Method::eq12, 0, nullptr);
         }
     out.bvs.shrink_to_fit();
     out.node.shrink_to_fit();

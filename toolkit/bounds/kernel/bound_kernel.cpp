@@ -57,11 +57,6 @@ void bound_by_blocks(const KernelInput<T>& in, const PackedBv<T>& bv, T* remembe
         dual<T, kAxes, false>(bv, block, rows, b, lambda, d);
         intersect<T, kAxes>(in, bv, e, lambda, d, out);
     }
-    if (bv.guard) {
-        Sides<T, kAxes> floor;
-        floor_of_probes<T, kAxes>(bv, *in.maps, floor);
-        store<T, kAxes>(floor, out.floor);
-    }
     if (bv.kind == Method::local)
         search<T, kAxes>(in, bv, e, remembered, out, [&]<bool kMass>(const T (&at)[2][kAxes], Dual<T, kAxes>& own) {
             dual<T, kAxes, kMass>(bv, block, rows, b, at, own);

@@ -38,19 +38,6 @@ template <class T, std::size_t kAxes> HWY_INLINE void floor_of_mean(const Packed
     }
 }
 
-/// Of the two probes the lesser: where every l is 0, Eq. 12 is at least the second-greatest b.
-template <class T, std::size_t kAxes> HWY_INLINE void floor_of_probes(const PackedBv<T>& bv, const ProjectedMaps<T>& maps, Sides<T, kAxes>& floor)
-{
-    for (std::size_t c = 0; c < row_chunks<kAxes>; ++c) {
-        auto reach = Rows<T>::all(-infinity_of<T>);
-        if (bv.sum_l == 0)
-            reach = lesser(box_reach(bv, Rows<T>::load(map_of<T, kAxes>(maps, bv.probe[0]) + 16 * c)),
-                           box_reach(bv, Rows<T>::load(map_of<T, kAxes>(maps, bv.probe[1]) + 16 * c)));
-        floor.chunk[0][c] = column<0>(reach);
-        floor.chunk[1][c] = column<1>(reach);
-    }
-}
-
 /// Whether a bound, the errors of its nodes included, lies close enough above its floors; false where one of them is no number.
 template <class T> bool close_to(double bound, T floor, T opposite_floor)
 {

@@ -82,7 +82,7 @@ template <class T, std::size_t kAxes> bool is_close(const KernelInput<T>& in, co
 }
 
 /// λ near the best one by at most in.passes evaluations of D, which is evaluate<with its mass>(λ, D). The kind local, whose best D is at most
-/// Eq. 12, goes on where it has a guard and may exceed it, and raises its floors to what its tangents leave.
+/// Eq. 12, goes on a while where it has a guard, until its tangents leave little: they are its floors.
 template <class T, std::size_t kAxes, class Evaluate>
 void search(const KernelInput<T>& in, const PackedBv<T>& bv, const Extrema<T, kAxes>& e, T* remembered, Bound<T, kAxes>& out, const Evaluate& evaluate)
 {
@@ -95,13 +95,14 @@ void search(const KernelInput<T>& in, const PackedBv<T>& bv, const Extrema<T, kA
                 lambda[s][a] = remembered[2 * (s * kAxes + a)];
         }
     Dual<T, kAxes> d;
-    if (in.passes == 1 && !remembered) {
+    if (in.passes == 1 && !remembered && !guarded) {
         evaluate.template operator()<false>(lambda, d);
-        intersect<T, kAxes>(in, bv, e, lambda, d, out);
-        if (!guarded || is_close<T, kAxes>(in, bv, out))
-            return;
+        return intersect<T, kAxes>(in, bv, e, lambda, d, out);
     }
-    constexpr int most_passes = 12;
+    if (guarded)
+        for (auto& side : out.floor)
+            std::fill(side, side + kAxes, -infinity_of<T>);
+    constexpr int most_passes = 3;
     std::optional<TangentSearch<T>> tangents[2][kAxes];
     for (int pass = 0; pass < in.passes || (guarded && pass < most_passes && !is_close<T, kAxes>(in, bv, out)); ++pass) {
         evaluate.template operator()<true>(lambda, d);
