@@ -49,6 +49,8 @@ TEST_CASE("a buffer's file is found under any name")
         d.text();
         const TemporaryFolder folder;
         d.root["buffers"][0]["uri"] = uri;
+        for (std::string other : {"a b.bin", "a+b.bin", "a%2Bb.bin"}) // none of which is taken for it
+            folder.write(other, "short");
         folder.write(name, d.bytes);
         CHECK(read_gltf(folder.write("file.gltf", d.root.dump())).mesh.vertices.size() == 3);
     }
