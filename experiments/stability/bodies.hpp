@@ -48,7 +48,7 @@ inline void add_elastic(BodySimulation& s, double young, Missing missing, double
         s.add(make_hourglass(s.body(), 1, young));
 }
 
-inline Integration implicit_steps(double step, Missing missing, double tolerance = 1e-3)
+inline Integration implicit_steps(double step, Missing missing, double tolerance = 1e-5)
 {
     Integration i;
     i.step_s = step;

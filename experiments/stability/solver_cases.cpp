@@ -81,7 +81,7 @@ StabilityOutcome stiff(Missing missing)
         std::string failure;
         bool grew = false;
         for (int step = 0; step < 20 && failure.empty(); ++step) {
-            const StepReport r = s.advance(1.0 / 30, implicit_steps(1.0 / 30, missing, 1e-2));
+            const StepReport r = s.advance(1.0 / 30, implicit_steps(1.0 / 30, missing));
             failure = r.failure;
             grew |= r.kinetic + r.potential > energy + 1e-9 * start;
             energy = r.kinetic + r.potential;

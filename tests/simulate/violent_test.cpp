@@ -17,7 +17,6 @@ Integration steps(Integration::Method method, double step)
     Integration i;
     i.method = method;
     i.step_s = step;
-    i.tolerance = 1e-3;
     return i;
 }
 

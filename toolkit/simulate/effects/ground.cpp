@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -11,6 +12,13 @@ namespace cinch {
 namespace {
 
 constexpr double slow = 5e-4; // see Ground
+
+// ∛v of v > 0, by way of [1, 8): the library's rounding is not the same for all powers of 8.
+double cube_root(double v)
+{
+    const int thirds = static_cast<int>(std::floor(std::ilogb(v) / 3.0));
+    return std::ldexp(std::cbrt(std::ldexp(v, -3 * thirds)), thirds);
+}
 
 // What touches the ground: the vertices of the surface, or the nodes of a body that has none.
 class GroundContact : public Effect {
@@ -140,7 +148,7 @@ public:
             mass += c.body.mass[i];
             volume += c.body.volume[i];
         }
-        const double slow_m_per_s = slow * std::sqrt(held / mass * std::cbrt(volume));
+        const double slow_m_per_s = slow * std::sqrt(held / mass * cube_root(volume));
         const Vec3 way = way_from(c);
         for (std::size_t k = 0; k < count; ++k)
             if (double& drag = next[4 * k + 3]; drag > 0)
