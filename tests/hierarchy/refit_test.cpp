@@ -174,11 +174,14 @@ TEST_CASE("the default is nowhere clearly looser than Eq. 12: by more than 1 % o
             for (const int k : {6, 26})
                 for (const int passes : {0, 1, 3})
                     for (const bool remember : {false, true}) {
+                        if (k == 26 && passes != 1)
+                            continue;
                         std::vector<double> best(bvh.bvs.size() * static_cast<std::size_t>(k)), eq12(best);
                         Refitter refitter(bvh, surface, {Method::best, k, Rounding::proven, precision, passes, RestShape::aabb, remember});
                         for (int frame = 0; frame < 2; ++frame)
                             refitter(maps, best);
                         refit(bvh, surface, maps, {Method::eq12, k, Rounding::proven, precision}, eq12);
+                        INFO(name_of(precision) << ", k " << k << ", " << passes << " passes, remembered " << remember);
                         for (std::size_t i = 0; i < best.size(); ++i) {
                             above += best[i] > eq12[i];
                             REQUIRE(best[i] - eq12[i] <= 0.01 * (eq12[i] + eq12[i ^ 1]) + 8 * unit_roundoff * std::abs(eq12[i]));
@@ -197,6 +200,19 @@ TEST_CASE("the default is nowhere clearly looser than Eq. 12: by more than 1 % o
                     map.m[r][s] = kind == 0 ? map.m[r][s] : kind == 1 ? uniform(1) : kind == 2 ? (s == (r + 1) % 3 ? -1 : s == 3 ? uniform(2) : 0) : (s == 3 ? uniform(9) : 0);
         }
         never_looser(e.surface, scene % 2 ? 1 : 8, maps);
+    }
+    const test::Example many = test::example(900, 150);
+    for (const std::vector<AffineMap>& frame : many.frames) // large BVs may have no Eq. 12 in reserve
+        never_looser(many.surface, 8, frame);
+    const test::Example wild = test::example(900, 60);
+    for (const double strength : {0.1, 1.0, 4.0}) {
+        std::vector<AffineMap> maps = wild.frames[1];
+        for (AffineMap& map : maps)
+            for (auto& row : map.m)
+                for (double& value : row)
+                    value += uniform(strength);
+        INFO("strength " << strength);
+        never_looser(wild.surface, 8, maps);
     }
     for (Vec3& x : e.surface.mesh.vertices) // a sheet, whose bounds have no width but their rounding
         x[1] = 0.25;

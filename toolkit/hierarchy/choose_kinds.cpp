@@ -14,6 +14,7 @@ namespace cinch {
 namespace {
 
 constexpr int kdop = 6;
+constexpr std::uint32_t guarded_below = 64; // simulation nodes; BVs of more have a guard unless they lie far below Eq. 12
 
 // p → R (p + S p + Q(p, p)) in units of the surface, R a rotation, S and Q small and random; value and Jacobian at each node.
 std::vector<AffineMap> synthetic_frame(std::span<const Vec3> node, const RestBox& box, double strength, std::mt19937_64& random)
@@ -161,13 +162,16 @@ std::vector<ChosenKind> choose_kinds(const Bvh& bvh, const DeformableSurface& su
                 }
             return width;
         };
-        // Far below Eq. 12 in every direction of every frame, as the kind local is where its boxes are far smaller than the BV's.
+        // Below Eq. 12 in every direction of every frame, and of many simulation nodes: as the kind local is where its boxes are far smaller
+        // than the BV's. Its λ alone could make it exceed Eq. 12 then, and the more nodes there are the less a λ can be off.
         auto far_below_eq12 = [&](std::size_t kind) {
+            if (!policy.calibrated || bvh.bvs[i].influence_count < guarded_below)
+                return false;
             for (std::size_t f = 0; f < frames.size(); ++f)
                 for (std::size_t d = 0; d < kdop; ++d) {
                     const std::size_t first = (f * bvh.bvs.size() + i) * kdop;
                     const double width = eq12.supports[first + d] + eq12.supports[first + (d ^ 1)];
-                    if (!(trial[kind].supports[first + d] <= eq12.supports[first + d] - 0.1 * width))
+                    if (!(trial[kind].supports[first + d] <= eq12.supports[first + d] - 0.02 * width))
                         return false;
                 }
             return true;
