@@ -322,7 +322,7 @@ void add_fuzz(CLI::App& app, FuzzOptions& o)
     CLI::App& command = *app.add_subcommand("fuzz", "every method against the exact side, random cases");
     auto option = [&](const char* name, auto& value, const std::string& description) { return command.add_option(name, value, wrapped(description)); };
     option("--seconds", o.seconds, "stop after so many seconds; 0 runs nothing")->check(CLI::Range(0.0, 1e9))->option_text("X");
-    option("--cases", o.cases, "stop after so many cases [100,000 if no --seconds]")->option_text("N");
+    option("--cases", o.cases, "stop after so many cases [100,000 if no --seconds]")->check(CLI::NonNegativeNumber)->option_text("N");
     option("--seed", o.seed, "case i of a seed is always the same [0]")->option_text("N");
     option("--family", o.family, fmt::format("only this family: {} [all in turn]", fmt::join(fuzz_families(), ", ")))
         ->check(CLI::Validator([](std::string& text) {

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+#include <cstdlib>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -24,10 +27,10 @@ std::vector<double> numbers(const json& array, const std::string& file, const st
 {
     std::vector<double> out;
     for (const json& value : array) {
-        std::size_t used = 0;
-        const std::string text = value.get<std::string>();
-        out.push_back(std::stod(text, &used));
-        if (used != text.size() || !std::isfinite(out.back()))
+        const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+        char* end = nullptr;
+        out.push_back(std::strtod(text.c_str(), &end)); // decimal or hexadecimal; too small a number is 0 or subnormal
+        if (text.empty() || end != text.c_str() + text.size() || !std::isfinite(out.back()))
             throw InputError::in_file(file, fmt::format("field {}: '{}' is not a finite number", field, text));
     }
     if (out.size() != count)
@@ -70,16 +73,28 @@ FuzzCase fuzz_case_from_json(const std::string& text, const std::string& file)
                 throw InputError::in_file(file, "field b has no row");
             return out;
         }
-        const auto n = root.at("n").get<std::size_t>();
-        out.kdop = root.at("kdop").get<int>();
-        out.trial = root.value("trial", 0u);
-        out.passes = root.value("passes", 1);
+        auto whole = [&](const char* field, std::uint64_t least, std::uint64_t most) {
+            const json& value = root.at(field);
+            if (!value.is_number_unsigned() || value.get<std::uint64_t>() < least || value.get<std::uint64_t>() > most)
+                throw InputError::in_file(file, fmt::format("field {}: {} is no whole number from {} to {}", field, value.dump(), least, most));
+            return value.get<std::uint64_t>();
+        };
+        const std::size_t n = whole("n", 1, 65535);
+        out.kdop = static_cast<int>(whole("kdop", 6, 26));
+        if (out.kdop != 6 && out.kdop != 14 && out.kdop != 18 && out.kdop != 26)
+            throw InputError::in_file(file, fmt::format("field kdop: {} is none of 6, 14, 18 and 26", out.kdop));
+        out.trial = root.contains("trial") ? static_cast<std::uint32_t>(whole("trial", 0, surface_trials)) : 0;
+        out.passes = root.contains("passes") ? static_cast<int>(whole("passes", 1, 100)) : 1;
         for (const json& p : root.at("rest")) {
             const auto x = numbers(p, file, "rest", 3);
             out.rest.emplace_back(x[0], x[1], x[2]);
         }
-        for (const json& row : root.at("weights"))
+        for (const json& row : root.at("weights")) {
             out.weights.push_back(numbers(row, file, "weights", n));
+            for (const double w : out.weights.back())
+                if (!(w >= 0 && w <= 1))
+                    throw InputError::in_file(file, fmt::format("field weights: {} lies outside 0 to 1", w));
+        }
         for (const json& map : root.at("maps")) {
             const auto x = numbers(map, file, "maps", 12);
             out.maps.emplace_back();

@@ -2,6 +2,7 @@
 #include "experiments/fuzz/fuzz.hpp"
 
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 
@@ -187,6 +188,11 @@ private:
 
 } // namespace
 
-int fuzz(const FuzzOptions& options) { return Session(options).run(); }
+int fuzz(const FuzzOptions& options)
+{
+    if (options.seconds && !(std::isfinite(*options.seconds) && *options.seconds >= 0)) // NaN is in every range
+        throw InputError(fmt::format("--seconds {}: expected seconds >= 0", *options.seconds));
+    return Session(options).run();
+}
 
 } // namespace cinch

@@ -40,6 +40,28 @@ TEST_CASE("every hard case of the corpus holds, and survives a round trip throug
     CHECK(replayed >= 10);
 }
 
+TEST_CASE("a case whose file was changed is refused by the name of the field")
+{
+    const std::string good = to_json(draw_case(9, 3, "surface"), "");
+    REQUIRE(to_json(fuzz_case_from_json(good, "a"), "") == good);
+    auto refused = [&](const char* field, const std::string& value) {
+        json changed = json::parse(good);
+        changed[field] = json::parse(value);
+        CHECK_THROWS_WITH(fuzz_case_from_json(changed.dump(), "a"), Catch::StartsWith("a: field " + std::string(field)));
+    };
+    for (const char* field : {"n", "kdop", "trial", "passes"})
+        for (const char* odd : {"-1", "1e30", "6.5", "null", "\"6\"", "18446744073709551615"})
+            refused(field, odd);
+    refused("kdop", "7");
+    refused("passes", "0");
+    for (const char* odd : {"nan", "inf", "", "1x", "1e999"}) {
+        refused("rest", "[[\"" + std::string(odd) + "\",\"0\",\"0\"]]");
+        refused("maps", "[[\"" + std::string(odd) + "\"]]");
+    }
+    refused("rest", "[[\"0\",\"0\"]]");
+    refused("weights", "[[\"1\"]" + std::string(",[]]"));
+}
+
 TEST_CASE("every family draws, repeatably, and holds")
 {
     for (const std::string_view family : fuzz_families())
@@ -184,10 +206,12 @@ TEST_CASE("a fuzz state continues only what it is of, and every field is checked
     refused(good.substr(0, good.size() - 2) + ",\"next\":5000}\n", options, "was changed");
     refused(" " + good, options, "was changed");
     refused("[]\n", options, "is no state file");
-    for (std::size_t i = 0; i < good.size(); i += 7) {
+    for (std::size_t i = 1; i < good.size(); i += 7) {
         refused(good.substr(0, i), options, state + ": ");
         refused(good.substr(0, i) + static_cast<char>(good[i] ^ 1) + good.substr(i + 1), options, state + ": ");
     }
+    folder.write("s", "");
+    CHECK(test::cinch("fuzz " + options + "--resume " + state).status == 2);
     folder.write("s", good);
     const test::Run run = test::cinch("fuzz " + options + "--json --resume " + state);
     CHECK(run.status == 0);

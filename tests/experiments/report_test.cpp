@@ -150,7 +150,7 @@ TEST_CASE("a results file of which any byte is changed, left out or added gives 
     REQUIRE(records(good) == 2);
     for (std::size_t i = 0; i < good.size(); ++i) {
         INFO(i << ": " << good.substr(i, 20));
-        for (const char flip : {1, 4, 32})
+        for (const char flip : {'\1', '\4', ' '})
             REQUIRE(records(good.substr(0, i) + static_cast<char>(good[i] ^ flip) + good.substr(i + 1)) == 0);
         REQUIRE(records(good.substr(0, i)) == 0);
         REQUIRE(records(good.substr(0, i) + good.substr(i + 1)) == 0);
