@@ -8,12 +8,18 @@ class Gravity : public Effect {
 public:
     explicit Gravity(const Vec3& acceleration) : Effect("gravity"), acceleration_(acceleration) {}
 
+    // Of displacements, and of the reference as a whole: what a step compares are displacements, and their energy is not to drown in that
+    // of where they are.
     double energy(const Configuration& c) const override
     {
-        double sum = 0;
-        for (std::size_t i = 0; i < c.body.size(); ++i)
-            sum -= c.body.mass[i] * acceleration_.dot(at(c.x, i) - c.datum);
-        return sum;
+        Vec3 moved = Vec3::Zero(), rest = Vec3::Zero();
+        double mass = 0;
+        for (std::size_t i = 0; i < c.body.size(); ++i) {
+            moved += c.body.mass[i] * at(c.u, i);
+            rest += c.body.mass[i] * (c.body.rest[i] - c.reference.centre);
+            mass += c.body.mass[i];
+        }
+        return -acceleration_.dot(moved) - acceleration_.dot(c.reference.rotation * rest - mass * c.datum);
     }
     void add_forces(const Configuration& c, Forces out) const override
     {

@@ -26,10 +26,12 @@ public:
     double energy(const Configuration& c) const override
     {
         const Vec3 f = now(c.time_s);
-        double sum = 0;
-        for (std::size_t k = 0; k < share_.size(); ++k)
-            sum -= share_[k] * f.dot(at(c.x, pull_.nodes[k]) - c.datum);
-        return sum;
+        Vec3 moved = Vec3::Zero(), rest = Vec3::Zero(); // as in gravity.cpp
+        for (std::size_t k = 0; k < share_.size(); ++k) {
+            moved += share_[k] * at(c.u, pull_.nodes[k]);
+            rest += share_[k] * (c.body.rest[pull_.nodes[k]] - c.reference.centre);
+        }
+        return -f.dot(moved) - f.dot(c.reference.rotation * rest - c.datum);
     }
     void add_forces(const Configuration& c, Forces out) const override
     {
