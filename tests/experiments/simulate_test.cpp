@@ -197,8 +197,8 @@ TEST_CASE("positions that leave the numbers end a run, and are not written")
     CHECK(run.err.find("body 'body-0' at 1.7") != std::string::npos);
     const FrameFile written = read_frames(frames);
     CHECK(written.bodies[0].frame_count() > 100);
-    for (const auto& frame : written.bodies[0].frames)
-        for (const AffineMap& map : frame)
+    for (std::size_t f = 0; f < written.bodies[0].frame_count(); ++f)
+        for (const AffineMap& map : written.bodies[0].frame(f))
             REQUIRE(std::isfinite(map.m[0][3]));
     const fs::path far = folder.write("far.json", R"({"duration": 0.1, )" + body + R"(, "position": [1e39, 0, 0]}], "effects": []})");
     const auto meshes = test::cinch("simulate " + far.string() + " --meshes " + (folder.path() / "m").string());

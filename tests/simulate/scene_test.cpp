@@ -190,7 +190,7 @@ TEST_CASE("frames are read back as they were written, and damage is seen")
     REQUIRE(all.bodies.size() == 2);
     REQUIRE(all.bodies[0].frame_count() == 3);
     CHECK(all.bodies[0].frame(2)[1].m[2][3] == 1.0 / 3);
-    CHECK(all.bodies[1].time_s[2] == 0.5);
+    CHECK(all.bodies[1].time_s(2) == 0.5);
     CHECK_FALSE(all.cut_off);
     const FrameFile cut = read_frames(folder.write("b", std::string_view(bytes).substr(0, bytes.size() - 1)));
     CHECK(cut.bodies[0].frame_count() == 2);
