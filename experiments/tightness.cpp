@@ -242,7 +242,8 @@ void print_tables(const Measured& measured, const std::vector<Figure>& figures, 
     print_note(completeness);
     for (const std::string& line : first.report)
         fmt::print("{}\n", line);
-    fmt::print("bounds in {}, AABBs, at most {} per leaf; radius: half diagonal\n\n", name_of(options.precision), counted(options.leaf, "triangle", "triangles"));
+    fmt::print("bounds in {}, AABBs, at most {} per leaf; radius: half diagonal{}\n\n", name_of(options.precision), counted(options.leaf, "triangle", "triangles"),
+               partial_mark(first.missing));
     for (const Run& run : measured.full)
         print_levels(run, measured.names);
     if (const std::vector<Run>& sweep = measured.sweep; !sweep.empty()) {

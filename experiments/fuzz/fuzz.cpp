@@ -25,8 +25,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::uint64_t block_cases = 2048;
-constexpr auto between_saves = std::chrono::milliseconds(100);
+// Cases are run in blocks, which a kill loses and an interrupt waits for: long enough to occupy all threads, short enough for both.
+constexpr std::uint64_t first_block = 64, largest_block = 8192;
+constexpr auto shortest = std::chrono::milliseconds(20), longest = std::chrono::milliseconds(80), between_saves = std::chrono::milliseconds(100);
 
 const char* name_of(Defect defect)
 {
@@ -86,15 +87,18 @@ private:
 
     void run_block()
     {
+        const auto start = Clock::now();
         const std::uint64_t first = state_.next;
-        const std::uint64_t count = options_.cases ? std::min(block_cases, *options_.cases - first) : block_cases;
+        const std::uint64_t count = options_.cases ? std::min(block_, *options_.cases - first) : block_;
         std::vector<std::string> faults(count);
-        tbb::parallel_for(tbb::blocked_range<std::uint64_t>(0, count, 64), [&](const auto& range) {
+        tbb::parallel_for(tbb::blocked_range<std::uint64_t>(0, count, 8), [&](const auto& range) {
             for (std::uint64_t i = range.begin(); i < range.end() && !interrupted(); ++i)
                 faults[i] = find_fault(draw(first + i), options_.defect);
         });
         if (interrupted())
             return; // not all of it: a resumed run begins with it
+        const auto took = Clock::now() - start;
+        block_ = took < shortest ? std::min(2 * block_, largest_block) : took > longest ? std::max(block_ / 2, first_block) : block_;
         for (std::uint64_t i = 0; i < count; ++i)
             if (!faults[i].empty())
                 report(first + i);
@@ -181,7 +185,7 @@ private:
     RecordOutput output_;
     std::optional<FuzzStateFile> file_;
     FuzzState state_;
-    std::uint64_t resumed_from_ = 0;
+    std::uint64_t resumed_from_ = 0, block_ = first_block;
     double seconds_before_ = 0; ///< of a resumed state
     Clock::time_point start_, saved_;
 };
