@@ -54,7 +54,7 @@ template <class T> class Packer {
 public:
     Packer(const DeformableSurface& surface, PackedBvh<T>& out) : surface_(surface), out_(out) {}
 
-    void pack(const RestBv& rest, Method kind, double start, const OrientedBox* oriented)
+    void pack(const RestBv& rest, Method kind, double start, const OrientedBox* oriented, bool guarded)
     {
         if (out_.node.size() > std::numeric_limits<std::uint32_t>::max() - 8)
             throw std::length_error("pack: over 2^32 influences; use larger leaves");
@@ -74,6 +74,8 @@ public:
             for (std::uint32_t j : order_)
                 out_.node.push_back(rest.node[j]);
             out_.node.resize(bv_.first_node + blocks_of(rest.node.size()) * block_lanes, out_.node.back());
+            if (guarded && kind == Method::local)
+                put_probes(rest);
         }
         put_box(rest.box, out_.rest.origin, bv_.centre, bv_.half);
         if (oriented && are_normal(*oriented)) // else the other box does
@@ -104,6 +106,29 @@ private:
                 to.push_back(static_cast<std::uint32_t>(j));
         }
         order_.insert(order_.end(), others.begin(), others.end());
+    }
+
+    // Each the node whose box is farthest from those of the probes before it, the first from the middle. None where Eq. 12 may lie below
+    // the second-greatest extremum, or there are too few nodes.
+    void put_probes(const RestBv& rest)
+    {
+        const std::size_t count = rest.node.size();
+        if (count < guard_probes || std::any_of(rest.space.l.begin(), rest.space.l.end(), [](double l) { return l != 0; }))
+            return;
+        std::vector<double> distance(count);
+        auto distance_to = [&](std::size_t j, const Vec3& place) { return (rest.local[j].centre - place).squaredNorm(); };
+        for (std::size_t j = 0; j < count; ++j)
+            distance[j] = distance_to(j, rest.box.centre);
+        for (std::size_t n = 0; n < guard_probes; ++n) {
+            const auto farthest = static_cast<std::size_t>(std::max_element(distance.begin(), distance.end()) - distance.begin());
+            out_.node.push_back(rest.node[farthest]);
+            if (n == 0)
+                std::fill(distance.begin(), distance.end(), std::numeric_limits<double>::infinity());
+            distance[farthest] = -1; // not again
+            for (std::size_t j = 0; j < count; ++j)
+                distance[j] = std::min(distance[j], distance_to(j, rest.local[farthest].centre));
+        }
+        bv_.probed = true;
     }
 
     // Whether T holds every component of the axes to within u|a|, and so does the product with what it grows by: none is subnormal, but it may be 0.
@@ -322,17 +347,17 @@ template <class T> PackedBvh<T> pack(const Bvh& bvh, const DeformableSurface& su
         if (wanted(i)) {
             if (!leaves)
                 out.place[i] = static_cast<std::uint32_t>(out.bvs.size());
-            packer.pack(bvh.rest(i), kinds[i].kind, kinds[i].start, kinds[i].oriented ? &bvh.bvs[i].oriented : nullptr);
+            packer.pack(bvh.rest(i), kinds[i].kind, kinds[i].start, kinds[i].oriented ? &bvh.bvs[i].oriented : nullptr, kinds[i].guarded);
         }
     for (std::size_t i = 0; i < bvh.bvs.size(); ++i)
         if (kinds[i].also && wanted(i)) {
             out.bvs[leaves ? i : out.place[i]].also = static_cast<std::uint32_t>(out.bvs.size());
-            packer.pack(bvh.rest(i), *kinds[i].also, kinds[i].also_start, nullptr);
+            packer.pack(bvh.rest(i), *kinds[i].also, kinds[i].also_start, nullptr, false);
         }
     for (std::size_t i = 0; i < bvh.bvs.size(); ++i)
         if (kinds[i].guarded && wanted(i)) {
             out.bvs[leaves ? i : out.place[i]].guard = static_cast<std::uint32_t>(out.bvs.size());
-            packer.pack(bvh.rest(i), Method::eq12, 0, nullptr);
+            packer.pack(bvh.rest(i), Method::eq12, 0, nullptr, false);
         }
     out.bvs.shrink_to_fit();
     out.node.shrink_to_fit();

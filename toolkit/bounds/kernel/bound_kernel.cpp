@@ -52,13 +52,13 @@ void bound_by_blocks(const KernelInput<T>& in, const PackedBv<T>& bv, T* remembe
         intersect<T, kAxes>(in, bv, e, e.second, d, out);
     }
     if (bv.kind == Method::limited) {
-        T lambda[2][kAxes];
+        PerSide<T, kAxes> lambda;
         select_best<T, kAxes>(bv, block, b, scratch.select, lambda);
         dual<T, kAxes, false>(bv, block, rows, b, lambda, d);
         intersect<T, kAxes>(in, bv, e, lambda, d, out);
     }
     if (bv.kind == Method::local)
-        search<T, kAxes>(in, bv, e, remembered, out, [&]<bool kMass>(const T (&at)[2][kAxes], Dual<T, kAxes>& own) {
+        search<T, kAxes>(in, bv, e, remembered, out, [&]<bool kMass>(const PerSide<T, kAxes>& at, Dual<T, kAxes>& own) {
             dual<T, kAxes, kMass>(bv, block, rows, b, at, own);
         });
 }
@@ -89,7 +89,7 @@ void bound_by_rows(const KernelInput<T>& in, const PackedBv<T>& bv, T* remembere
             to_array<T, kAxes>(e.greatest, own.greatest);
             to_array<T, kAxes>(e.mean, own.mean);
             begin<T, kAxes>(own, out);
-            search<T, kAxes>(in, bv, own, remembered, out, [&]<bool kMass>(const T (&at)[2][kAxes], Dual<T, kAxes>& d) {
+            search<T, kAxes>(in, bv, own, remembered, out, [&]<bool kMass>(const PerSide<T, kAxes>& at, Dual<T, kAxes>& d) {
                 SidesInRows<T, kAxes> lambda;
                 from_array<T, kAxes>(at, lambda);
                 RowDual<T, kAxes> parts;
@@ -101,7 +101,7 @@ void bound_by_rows(const KernelInput<T>& in, const PackedBv<T>& bv, T* remembere
             });
             for (std::size_t s = 0; s < 2; ++s)
                 for (std::size_t c = 0; c < chunks; ++c)
-                    bound.chunk[s][c] = Rows<T>::each_row(&out.value[s][4 * c]);
+                    bound.chunk[s][c] = Rows<T>::each_row(out.value[s] + 4 * c);
         }
         for (std::size_t c = 0; c < chunks; ++c)
             add_rest_support(bv, point, reference.chunk[c], reference.chunk[c], in.rounding, bound.chunk[0][c], bound.chunk[1][c]);
@@ -154,7 +154,7 @@ void finish(const KernelInput<T>& in, const PackedBv<T>& bv, const Bound<T, kAxe
         const float by = succ(static_cast<float>(wider)); // fl(x) ≥ x(1 − u), and succ goes past x
         for (std::size_t s = 0; s < 2; ++s)
             for (std::size_t c = 0; c < row_chunks<kAxes>; ++c) {
-                const auto sum = next(Rows<float>::load(&bound.value[s][4 * c]) + Rows<float>::all(by));
+                const auto sum = next(Rows<float>::load(bound.value[s] + 4 * c) + Rows<float>::all(by));
                 HWY_ALIGN float own[16];
                 lesser(sum, Rows<float>::all(infinity_of<float>)).store(own);
                 for (std::size_t a = 4 * c; a < std::min(4 * c + 4, kAxes); ++a)

@@ -84,13 +84,12 @@ void extrema(const PackedBv<T>& bv, const ProjectedMaps<T>& maps, const std::uin
         });
     }
     error = greatest(most);
-    const T range = sum(ranges);
-    for (std::size_t a = 0; a < kAxes; ++a) {
-        const T position = kSecond ? 0 : sum(other[0][a]), radius = kSecond ? 0 : sum(other[1][a]);
-        for (std::size_t s = 0; s < 2; ++s) {
-            const T top = out.greatest[s][a] = greatest(first[s][a]);
-            if constexpr (kSecond) { // of the lanes' two greatest
-                T x[2 * block_lanes], second = -infinity_of<T>;
+    greatest(first, out.greatest);
+    if constexpr (kSecond) {
+        for (std::size_t s = 0; s < 2; ++s)
+            for (std::size_t a = 0; a < kAxes; ++a) {
+                const T top = out.greatest[s][a];
+                T x[2 * block_lanes], second = -infinity_of<T>; // of the lanes' two greatest
                 first[s][a].store(x);
                 other[s][a].store(x + block_lanes);
                 bool seen = false;
@@ -101,16 +100,25 @@ void extrema(const PackedBv<T>& bv, const ProjectedMaps<T>& maps, const std::uin
                         second = value > second ? value : second;
                 }
                 out.second[s][a] = bv.count > 1 ? second : top;
-            } else {
-                out.mean[s][a] = range > 0 ? (s == 0 ? radius + position : radius - position) / range : top;
             }
+        out.second.repeat_last();
+    } else {
+        PerSide<T, kAxes> both; // position and radius
+        sum(other, both);
+        const T range = sum(ranges);
+        PerSide<T, kAxes> sign;
+        std::fill_n(sign[0], sign.room, T(1));
+        std::fill_n(sign[1], sign.room, T(-1));
+        for (std::size_t i = 0; i < 2 * both.room; i += block_lanes) { // radius ± position
+            const auto sides = lanes_of(both, i) + lanes_of(sign, i) * opposite_lanes(both, i);
+            (range > 0 ? sides / Lanes<T>::all(range) : lanes_of(out.greatest, i)).store(out.mean.value + i);
         }
     }
 }
 
 /// D(λ) in parts, with kMass Σ r over b > λ too.
 template <class T, std::size_t kAxes, bool kMass, bool kLower>
-void dual(const PackedBv<T>& bv, const T* block, std::size_t rows, const T* b, const T (&lambda)[2][kAxes], Dual<T, kAxes>& out)
+void dual(const PackedBv<T>& bv, const T* block, std::size_t rows, const T* b, const PerSide<T, kAxes>& lambda, Dual<T, kAxes>& out)
 {
     Lanes<T> lower[2][kAxes], upper[2][kAxes], mass[2][kAxes];
     for (std::size_t s = 0; s < 2; ++s)
@@ -130,16 +138,17 @@ void dual(const PackedBv<T>& bv, const T* block, std::size_t rows, const T* b, c
                     mass[s][a] = mass[s][a] + where_positive(above, r);
             }
     }
-    for (std::size_t s = 0; s < 2; ++s)
-        for (std::size_t a = 0; a < kAxes; ++a) {
-            out.lower[s][a] = kLower ? sum(lower[s][a]) : 0;
-            out.upper[s][a] = sum(upper[s][a]);
-            out.mass[s][a] = kMass ? sum(mass[s][a]) : 0;
-        }
+    sum(upper, out.upper);
+    if constexpr (kLower)
+        sum(lower, out.lower);
+    else
+        fill(out.lower, T(0));
+    if constexpr (kMass)
+        sum(mass, out.mass);
 }
 
 template <class T, std::size_t kAxes, bool kMass>
-void dual(const PackedBv<T>& bv, const T* block, std::size_t rows, const T* b, const T (&lambda)[2][kAxes], Dual<T, kAxes>& out)
+void dual(const PackedBv<T>& bv, const T* block, std::size_t rows, const T* b, const PerSide<T, kAxes>& lambda, Dual<T, kAxes>& out)
 {
     if (bv.sum_l > 0)
         dual<T, kAxes, kMass, true>(bv, block, rows, b, lambda, out);

@@ -20,21 +20,43 @@ namespace cinch::HWY_NAMESPACE {
 /// Half of what is promised: λ is sought with sums that are rounded.
 inline constexpr double clearly_looser = 0.005;
 
-/// Along and against every axis what the map reaches over the BV's box: for a map q, θ of every axis q·c + θ ± |q|·e.
-template <class T> HWY_INLINE Rows<T> box_reach(const PackedBv<T>& bv, const Rows<T>& map)
-{
-    HWY_ALIGN const T centre[4] = {bv.centre[0], bv.centre[1], bv.centre[2], 1}, half[4] = {bv.half[0], bv.half[1], bv.half[2], 0};
-    const auto position = map * Rows<T>::each_row(centre), radius = magnitude(map) * Rows<T>::each_row(half);
-    return row_sums(radius + position, radius - position);
-}
+/// Along and against every axis what a map reaches over the BV's box: for a map q, θ of every axis q·c + θ ± |q|·e.
+template <class T> struct BoxReach {
+    Rows<T> centre, half;
+
+    HWY_INLINE explicit BoxReach(const PackedBv<T>& bv) : centre(Rows<T>::each_row(bv.centre)), half(Rows<T>::each_row(bv.half)) {}
+    HWY_INLINE Rows<T> operator()(const Rows<T>& map) const
+    {
+        const auto position = map * centre, radius = magnitude(map) * half;
+        return row_sums(radius + position, radius - position);
+    }
+};
 
 /// The mean map's reach: w = the means, |q̄| ≤ Σ m|q|.
 template <class T, std::size_t kAxes> HWY_INLINE void floor_of_mean(const PackedBv<T>& bv, const AxisMap<T, kAxes>& mean, Sides<T, kAxes>& floor)
 {
+    const BoxReach<T> over_box(bv);
     for (std::size_t c = 0; c < row_chunks<kAxes>; ++c) {
-        const auto reach = box_reach(bv, mean.chunk[c]);
+        const auto reach = over_box(mean.chunk[c]);
         floor.chunk[0][c] = column<0>(reach);
         floor.chunk[1][c] = column<1>(reach);
+    }
+}
+
+/// The second-greatest extremum over the BV's box among its probes: Eq. 12 is at least that of all nodes where every l is 0.
+template <class T, std::size_t kAxes> HWY_INLINE void floor_of_probes(const PackedBv<T>& bv, const ProjectedMaps<T>& maps, const std::uint32_t* node, Sides<T, kAxes>& floor)
+{
+    const std::uint32_t* const probe = node + blocks_of(bv.count) * block_lanes;
+    const BoxReach<T> over_box(bv);
+    for (std::size_t c = 0; c < row_chunks<kAxes>; ++c) {
+        auto first = Rows<T>::all(-infinity_of<T>), second = first;
+        for (std::size_t n = 0; n < guard_probes; ++n) {
+            const auto reach = over_box(Rows<T>::load(map_of<T, kAxes>(maps, probe[n]) + 16 * c));
+            second = greater(second, lesser(first, reach));
+            first = greater(first, reach);
+        }
+        floor.chunk[0][c] = column<0>(second);
+        floor.chunk[1][c] = column<1>(second);
     }
 }
 

@@ -55,6 +55,16 @@ template <class T> struct Lanes {
     }
 };
 
+template <class D, class V, class F> HWY_INLINE hn::TFromD<D> fold_vector(D, V v, F&& f)
+{
+    if constexpr (hn::MaxLanes(D()) == 1) {
+        return hn::GetLane(v);
+    } else {
+        const hn::Half<D> half;
+        return fold_vector(half, f(hn::LowerHalf(half, v), hn::UpperHalf(half, v)), f);
+    }
+}
+
 template <class T, class F> HWY_INLINE Lanes<T> each(const Lanes<T>& a, F&& f)
 {
     Lanes<T> x;
@@ -72,6 +82,7 @@ template <class T, class F> HWY_INLINE Lanes<T> each(const Lanes<T>& a, const La
 template <class T> HWY_INLINE Lanes<T> operator+(const Lanes<T>& a, const Lanes<T>& b) { return each(a, b, [](auto x, auto y) { return hn::Add(x, y); }); }
 template <class T> HWY_INLINE Lanes<T> operator-(const Lanes<T>& a, const Lanes<T>& b) { return each(a, b, [](auto x, auto y) { return hn::Sub(x, y); }); }
 template <class T> HWY_INLINE Lanes<T> operator*(const Lanes<T>& a, const Lanes<T>& b) { return each(a, b, [](auto x, auto y) { return hn::Mul(x, y); }); }
+template <class T> HWY_INLINE Lanes<T> operator/(const Lanes<T>& a, const Lanes<T>& b) { return each(a, b, [](auto x, auto y) { return hn::Div(x, y); }); }
 template <class T> HWY_INLINE Lanes<T> magnitude(const Lanes<T>& a) { return each(a, [](auto x) { return hn::Abs(x); }); }
 /// Of numbers; NaN occurs only where the node's error is infinite, which decides the result.
 template <class T> HWY_INLINE Lanes<T> greater(const Lanes<T>& a, const Lanes<T>& b) { return each(a, b, [](auto x, auto y) { return hn::Max(x, y); }); }
@@ -101,21 +112,121 @@ template <class T> HWY_INLINE Lanes<T> fma(const Lanes<T>& a, const Lanes<T>& b,
     return x;
 }
 
-/// ((0 + 4) + (2 + 6)) + ((1 + 5) + (3 + 7)).
-template <class T> HWY_INLINE T sum(const Lanes<T>& a)
+/// succ of rounding.hpp.
+template <class T> HWY_INLINE Lanes<T> next(const Lanes<T>& x)
 {
-    T x[block_lanes];
-    a.store(x);
-    return ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]));
+    constexpr T phi = unit_roundoff_of<T> * (1 + 2 * unit_roundoff_of<T>);
+    return x + (magnitude(x) * Lanes<T>::all(phi) + Lanes<T>::all(smallest_subnormal_of<T>));
 }
-template <class T> HWY_INLINE T greatest(const Lanes<T>& a)
+/// x where x < y, else y: y where x is not a number.
+template <class T> HWY_INLINE Lanes<T> lesser(const Lanes<T>& x, const Lanes<T>& y)
 {
-    T x[block_lanes];
-    a.store(x);
-    for (std::size_t half = block_lanes / 2; half > 0; half /= 2)
+    return each(x, y, [](auto a, auto b) { return hn::IfThenElse(hn::Lt(a, b), a, b); });
+}
+/// Whether every lane of x is at most that of y, and all are numbers.
+template <class T> HWY_INLINE bool at_most(const Lanes<T>& x, const Lanes<T>& y)
+{
+    bool all = true;
+    for (std::size_t i = 0; i < Lanes<T>::vectors; ++i)
+        all &= hn::AllTrue(typename Lanes<T>::D(), hn::Le(x.v[i], y.v[i]));
+    return all;
+}
+
+/// Halves upon each other until one value is left: lanes (0, 4), (1, 5), (2, 6), (3, 7), then (0, 2), (1, 3), then the last two.
+template <class T, class F> HWY_INLINE T fold(const Lanes<T>& a, F&& f)
+{
+    typename Lanes<T>::V v[Lanes<T>::vectors];
+    for (std::size_t i = 0; i < Lanes<T>::vectors; ++i)
+        v[i] = a.v[i];
+    for (std::size_t half = Lanes<T>::vectors / 2; half > 0; half /= 2)
         for (std::size_t i = 0; i < half; ++i)
-            x[i] = x[i + half] > x[i] ? x[i + half] : x[i];
-    return x[0];
+            v[i] = f(v[i], v[i + half]);
+    return fold_vector(typename Lanes<T>::D(), v[0], f);
+}
+/// That of each of eight.
+template <class T, class F> HWY_INLINE Lanes<T> fold(const Lanes<T> (&x)[block_lanes], F&& f)
+{
+    Lanes<T> out;
+#if HWY_TARGET != HWY_SCALAR
+    using D = typename Lanes<T>::D;
+    const D d;
+    if constexpr (sizeof(T) == 4 && Lanes<T>::width == 8) {
+        const hn::Repartition<double, D> pairs;
+        auto halves = [&](std::size_t a, std::size_t b) CINCH_FLATTEN {
+            const auto v = f(hn::ConcatLowerLower(d, x[b].v[0], x[a].v[0]), hn::ConcatUpperUpper(d, x[b].v[0], x[a].v[0]));
+            return hn::BitCast(pairs, v);
+        };
+        auto quarters = [&](std::size_t a, std::size_t b) CINCH_FLATTEN { // of x[a], x[b], x[a + 4], x[b + 4]
+            const auto one = halves(a, a + 4), two = halves(b, b + 4);
+            const auto v = f(hn::BitCast(d, hn::InterleaveLower(pairs, one, two)), hn::BitCast(d, hn::InterleaveUpper(pairs, one, two)));
+            return f(v, hn::Shuffle2301(v));
+        };
+        out.v[0] = hn::OddEven(quarters(1, 3), quarters(0, 2));
+        return out;
+    } else if constexpr (sizeof(T) == 8 && Lanes<T>::width == 4) {
+        auto quarters = [&](std::size_t a, std::size_t b) CINCH_FLATTEN {
+            const auto one = f(x[a].v[0], x[a].v[1]), two = f(x[b].v[0], x[b].v[1]);
+            const auto v = f(hn::ConcatLowerLower(d, two, one), hn::ConcatUpperUpper(d, two, one));
+            return f(v, hn::Shuffle01(v));
+        };
+        for (std::size_t h = 0; h < 2; ++h)
+            out.v[h] = hn::OddEven(quarters(4 * h + 1, 4 * h + 3), quarters(4 * h, 4 * h + 2));
+        return out;
+    }
+#endif
+    T value[block_lanes];
+    for (std::size_t n = 0; n < block_lanes; ++n)
+        value[n] = fold(x[n], f);
+    return Lanes<T>::load(value);
+}
+/// ((0 + 4) + (2 + 6)) + ((1 + 5) + (3 + 7)).
+template <class T> HWY_INLINE T sum(const Lanes<T>& a) { return fold(a, [](auto x, auto y) { return hn::Add(x, y); }); }
+template <class T> HWY_INLINE T greatest(const Lanes<T>& a) { return fold(a, [](auto x, auto y) { return hn::Max(x, y); }); }
+
+/// Lanes i to i + 7 of both sides, i < 2·room.
+template <class T, std::size_t kAxes> HWY_INLINE Lanes<T> lanes_of(const PerSide<T, kAxes>& x, std::size_t i) { return Lanes<T>::load(x.value + i); }
+/// The same lanes of the other side.
+template <class T, std::size_t kAxes> HWY_INLINE Lanes<T> opposite_lanes(const PerSide<T, kAxes>& x, std::size_t i)
+{
+    constexpr std::size_t room = PerSide<T, kAxes>::room;
+    if constexpr (room % block_lanes == 0) {
+        return Lanes<T>::load(x.value + (i + room) % (2 * room));
+    } else {
+        const auto both = Lanes<T>::load(x.value + i);
+        Lanes<T> out;
+        if constexpr (Lanes<T>::vectors > 1) {
+            for (std::size_t n = 0; n < Lanes<T>::vectors; ++n)
+                out.v[n] = both.v[(n + Lanes<T>::vectors / 2) % Lanes<T>::vectors];
+        } else {
+            const typename Lanes<T>::D d;
+            out.v[0] = hn::ConcatLowerUpper(d, both.v[0], both.v[0]);
+        }
+        return out;
+    }
+}
+/// fold() of every side and axis.
+template <class T, std::size_t kAxes, class F> HWY_INLINE void fold(const Lanes<T> (&x)[2][kAxes], PerSide<T, kAxes>& out, F&& f)
+{
+    constexpr std::size_t room = PerSide<T, kAxes>::room;
+    for (std::size_t i = 0; i < 2 * room; i += block_lanes) {
+        Lanes<T> in[block_lanes];
+        for (std::size_t n = 0; n < block_lanes; ++n)
+            in[n] = x[(i + n) / room][std::min((i + n) % room, kAxes - 1)];
+        fold(in, f).store(out.value + i);
+    }
+}
+template <class T, std::size_t kAxes> HWY_INLINE void sum(const Lanes<T> (&x)[2][kAxes], PerSide<T, kAxes>& out)
+{
+    fold(x, out, [](auto a, auto b) { return hn::Add(a, b); });
+}
+template <class T, std::size_t kAxes> HWY_INLINE void greatest(const Lanes<T> (&x)[2][kAxes], PerSide<T, kAxes>& out)
+{
+    fold(x, out, [](auto a, auto b) { return hn::Max(a, b); });
+}
+template <class T, std::size_t kAxes> HWY_INLINE void fill(PerSide<T, kAxes>& out, T value)
+{
+    for (std::size_t i = 0; i < 2 * out.room; i += block_lanes)
+        Lanes<T>::all(value).store(out.value + i);
 }
 
 /// Turns 4 values each of 8 records into 4 × 8: row[s] has the s-th value of every record.

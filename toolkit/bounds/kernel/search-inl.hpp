@@ -15,22 +15,23 @@
 #include "toolkit/bounds/kernel/bound_kernel.hpp"
 #include "toolkit/bounds/kernel/choose_lambda.hpp"
 #include "toolkit/bounds/kernel/guard-inl.hpp"
+#include "toolkit/bounds/kernel/lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace cinch::HWY_NAMESPACE {
 
-/// One BV's bound on its way, along and against the axes; room to store all rows of the last chunk.
+/// One BV's bound on its way.
 template <class T, std::size_t kAxes> struct Bound {
-    alignas(64) T value[2][4 * row_chunks<kAxes> + 12];
-    alignas(64) T floor[2][4 * row_chunks<kAxes> + 12]; // of a BV with a guard
-    T error; // the greatest of the BV's nodes
+    PerSide<T, kAxes> value, floor; // floors of a BV with a guard
+    T error;                        // the greatest of the BV's nodes
 };
 
-template <class T, std::size_t kAxes> void store(const Sides<T, kAxes>& sides, T (&out)[2][4 * row_chunks<kAxes> + 12])
+template <class T, std::size_t kAxes> void store(const Sides<T, kAxes>& sides, PerSide<T, kAxes>& out)
 {
     for (std::size_t s = 0; s < 2; ++s)
         for (std::size_t c = 0; c < row_chunks<kAxes>; ++c)
-            sides.chunk[s][c].store(&out[s][4 * c]); // what is too much, the next one overwrites
+            sides.chunk[s][c].store(out[s] + 4 * c); // what is too much, the next one overwrites
+    out.repeat_last();
 }
 
 /// What the errors of the BV's nodes add.
@@ -41,22 +42,23 @@ template <class T, std::size_t kAxes> double widening(const KernelInput<T>& in, 
 }
 
 template <class T, std::size_t kAxes>
-void intersect(const KernelInput<T>& in, const PackedBv<T>& bv, const Extrema<T, kAxes>& e, const T (&lambda)[2][kAxes], const Dual<T, kAxes>& d, Bound<T, kAxes>& out)
+void intersect(const KernelInput<T>& in, const PackedBv<T>& bv, const Extrema<T, kAxes>& e, const PerSide<T, kAxes>& lambda, const Dual<T, kAxes>& d, Bound<T, kAxes>& out)
 {
-    const T factor = dual_sum_factor<T>(takes_one_by_one(bv.kind) ? row_depth(bv.count) : sum_depth(bv.count)), underflow = dual_sum_underflow<T>(bv.count);
-    for (std::size_t s = 0; s < 2; ++s)
-        for (std::size_t a = 0; a < kAxes; ++a) {
-            const DualParts<T> parts{d.lower[s][a], d.upper[s][a], d.mass[s][a]};
-            const T value = in.rounding == Rounding::proven
-                                ? proven_dual_value(lambda[s][a], parts, e.greatest[s][a], e.greatest[1 - s][a], factor, underflow)
-                                : dual_value(lambda[s][a], parts);
-            if (value < out.value[s][a]) // not if it is NaN
-                out.value[s][a] = value;
+    const auto factor = Lanes<T>::all(dual_sum_factor<T>(takes_one_by_one(bv.kind) ? row_depth(bv.count) : sum_depth(bv.count)));
+    const auto underflow = Lanes<T>::all(dual_sum_underflow<T>(bv.count));
+    for (std::size_t i = 0; i < 2 * lambda.room; i += block_lanes) {
+        const auto at = lanes_of(lambda, i), upper = lanes_of(d.upper, i), both = lanes_of(d.lower, i) + upper;
+        auto value = at + both; // dual_value
+        if (in.rounding == Rounding::proven) { // proven_dual_value
+            const auto width = greater(lanes_of(e.greatest, i) - at, at + opposite_lanes(e.greatest, i));
+            value = next(at + next(both + next(factor * (width + upper) + underflow)));
         }
+        lesser(value, lanes_of(out.value, i)).store(out.value.value + i);
+    }
 }
 
 template <class T, std::size_t kAxes>
-void select_best(const PackedBv<T>& bv, const T* block, const T* b, std::vector<std::pair<T, T>>& scratch, T (&lambda)[2][kAxes])
+void select_best(const PackedBv<T>& bv, const T* block, const T* b, std::vector<std::pair<T, T>>& scratch, PerSide<T, kAxes>& lambda)
 {
     for (std::size_t s = 0; s < 2; ++s)
         for (std::size_t a = 0; a < kAxes; ++a) {
@@ -68,40 +70,52 @@ void select_best(const PackedBv<T>& bv, const T* block, const T* b, std::vector<
             }
             lambda[s][a] = best_lambda<T>(scratch, 1 - bv.sum_l);
         }
+    lambda.repeat_last();
 }
 
 /// Whether no side of the bound may exceed Eq. 12 clearly.
 template <class T, std::size_t kAxes> bool is_close(const KernelInput<T>& in, const PackedBv<T>& bv, const Bound<T, kAxes>& bound)
 {
-    const double wider = widening<T, kAxes>(in, bv, bound);
+    const auto wider = Lanes<T>::all(static_cast<T>(widening<T, kAxes>(in, bv, bound)));
     bool close = true;
-    for (std::size_t s = 0; s < 2; ++s)
-        for (std::size_t a = 0; a < kAxes; ++a)
-            close &= close_to<T>(static_cast<double>(bound.value[s][a]) + wider, bound.floor[s][a], bound.floor[1 - s][a]);
+    for (std::size_t i = 0; i < 2 * bound.floor.room; i += block_lanes) {
+        const auto floor = lanes_of(bound.floor, i), width = greater(floor + opposite_lanes(bound.floor, i), Lanes<T>::all(0));
+        close &= at_most(lanes_of(bound.value, i) + wider, floor + Lanes<T>::all(T(clearly_looser)) * width);
+    }
     return close;
 }
 
 /// λ near the best one by at most in.passes evaluations of D, which is evaluate<with its mass>(λ, D). The kind local, whose best D is at most
-/// Eq. 12, goes on a while where it has a guard, until its tangents leave little: they are its floors.
+/// Eq. 12, goes on a while where it has a guard, until it is close to its floors, which are those of its probes and its tangents.
 template <class T, std::size_t kAxes, class Evaluate>
 void search(const KernelInput<T>& in, const PackedBv<T>& bv, const Extrema<T, kAxes>& e, T* remembered, Bound<T, kAxes>& out, const Evaluate& evaluate)
 {
     const bool guarded = bv.guard != 0 && bv.kind == Method::local;
-    T lambda[2][kAxes];
-    for (std::size_t s = 0; s < 2; ++s)
-        for (std::size_t a = 0; a < kAxes; ++a) {
-            lambda[s][a] = e.mean[s][a] + bv.start * (e.greatest[s][a] - e.mean[s][a]);
-            if (remembered && std::isfinite(remembered[2 * (s * kAxes + a)]))
-                lambda[s][a] = remembered[2 * (s * kAxes + a)];
-        }
-    Dual<T, kAxes> d;
-    if (in.passes == 1 && !remembered && !guarded) {
-        evaluate.template operator()<false>(lambda, d);
-        return intersect<T, kAxes>(in, bv, e, lambda, d, out);
+    PerSide<T, kAxes> lambda;
+    for (std::size_t i = 0; i < 2 * lambda.room; i += block_lanes) {
+        const auto mean = lanes_of(e.mean, i);
+        (mean + Lanes<T>::all(bv.start) * (lanes_of(e.greatest, i) - mean)).store(lambda.value + i);
     }
-    if (guarded)
-        for (auto& side : out.floor)
-            std::fill(side, side + kAxes, -infinity_of<T>);
+    for (std::size_t s = 0; s < 2 && remembered; ++s)
+        for (std::size_t a = 0; a < kAxes; ++a)
+            if (std::isfinite(remembered[2 * (s * kAxes + a)]))
+                lambda[s][a] = remembered[2 * (s * kAxes + a)];
+    if (guarded) {
+        if (bv.probed) {
+            Sides<T, kAxes> floor;
+            floor_of_probes<T, kAxes>(bv, *in.maps, in.node.data() + bv.first_node, floor);
+            store<T, kAxes>(floor, out.floor);
+        } else {
+            fill(out.floor, -infinity_of<T>);
+        }
+    }
+    Dual<T, kAxes> d;
+    if (in.passes == 1 && !remembered) {
+        evaluate.template operator()<false>(lambda, d);
+        intersect<T, kAxes>(in, bv, e, lambda, d, out);
+        if (!guarded || is_close<T, kAxes>(in, bv, out))
+            return;
+    }
     constexpr int most_passes = 3;
     std::optional<TangentSearch<T>> tangents[2][kAxes];
     for (int pass = 0; pass < in.passes || (guarded && pass < most_passes && !is_close<T, kAxes>(in, bv, out)); ++pass) {
@@ -125,9 +139,8 @@ void search(const KernelInput<T>& in, const PackedBv<T>& bv, const Extrema<T, kA
 /// The greatest b, to be intersected with D where λ is best.
 template <class T, std::size_t kAxes> void begin(const Extrema<T, kAxes>& e, Bound<T, kAxes>& out)
 {
-    for (std::size_t s = 0; s < 2; ++s)
-        for (std::size_t a = 0; a < kAxes; ++a)
-            out.value[s][a] = e.greatest[s][a];
+    for (std::size_t i = 0; i < 2 * out.value.room; i += block_lanes)
+        lanes_of(e.greatest, i).store(out.value.value + i);
 }
 
 } // namespace cinch::HWY_NAMESPACE

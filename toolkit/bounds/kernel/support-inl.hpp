@@ -80,7 +80,7 @@ HWY_INLINE void support_dual(const PackedBv<T>& bv, const T* value, const T* b, 
 }
 
 /// Values per side and axis as an array, and back.
-template <class T, std::size_t kAxes> HWY_INLINE void to_array(const SidesInRows<T, kAxes>& rows, T (&out)[2][kAxes])
+template <class T, std::size_t kAxes> HWY_INLINE void to_array(const SidesInRows<T, kAxes>& rows, PerSide<T, kAxes>& out)
 {
     for (std::size_t c = 0; c < row_chunks<kAxes>; ++c) {
         HWY_ALIGN T lane[16];
@@ -89,8 +89,9 @@ template <class T, std::size_t kAxes> HWY_INLINE void to_array(const SidesInRows
             for (std::size_t s = 0; s < 2; ++s)
                 out[s][a] = lane[4 * (a % 4) + s];
     }
+    out.repeat_last();
 }
-template <class T, std::size_t kAxes> HWY_INLINE void from_array(const T (&in)[2][kAxes], SidesInRows<T, kAxes>& rows)
+template <class T, std::size_t kAxes> HWY_INLINE void from_array(const PerSide<T, kAxes>& in, SidesInRows<T, kAxes>& rows)
 {
     for (std::size_t c = 0; c < row_chunks<kAxes>; ++c) {
         HWY_ALIGN T lane[16] = {};
