@@ -57,12 +57,13 @@ template <class T> struct Lanes {
 
 template <class D, class V, class F> HWY_INLINE hn::TFromD<D> fold_vector(D, V v, F&& f)
 {
-    if constexpr (hn::MaxLanes(D()) == 1) {
-        return hn::GetLane(v);
-    } else {
+#if HWY_TARGET != HWY_SCALAR
+    if constexpr (hn::MaxLanes(D()) > 1) {
         const hn::Half<D> half;
         return fold_vector(half, f(hn::LowerHalf(half, v), hn::UpperHalf(half, v)), f);
     }
+#endif
+    return hn::GetLane(v);
 }
 
 template <class T, class F> HWY_INLINE Lanes<T> each(const Lanes<T>& a, F&& f)
@@ -194,13 +195,14 @@ template <class T, std::size_t kAxes> HWY_INLINE Lanes<T> opposite_lanes(const P
     } else {
         const auto both = Lanes<T>::load(x.value + i);
         Lanes<T> out;
-        if constexpr (Lanes<T>::vectors > 1) {
-            for (std::size_t n = 0; n < Lanes<T>::vectors; ++n)
-                out.v[n] = both.v[(n + Lanes<T>::vectors / 2) % Lanes<T>::vectors];
-        } else {
-            const typename Lanes<T>::D d;
-            out.v[0] = hn::ConcatLowerUpper(d, both.v[0], both.v[0]);
+#if HWY_TARGET != HWY_SCALAR
+        if constexpr (Lanes<T>::vectors == 1) {
+            out.v[0] = hn::ConcatLowerUpper(typename Lanes<T>::D(), both.v[0], both.v[0]);
+            return out;
         }
+#endif
+        for (std::size_t n = 0; n < Lanes<T>::vectors; ++n)
+            out.v[n] = both.v[(n + Lanes<T>::vectors / 2) % Lanes<T>::vectors];
         return out;
     }
 }
