@@ -14,7 +14,6 @@
 #include "toolkit/bounds/kernel/bound_kernel.hpp"
 #include "toolkit/collide/collider.hpp"
 #include "toolkit/hierarchy/refit.hpp"
-#include "toolkit/simulate/read_scene.hpp"
 #include "toolkit/simulate/simulation.hpp"
 
 using namespace cinch;
@@ -50,7 +49,7 @@ private:
 std::map<std::string, std::string> recorded()
 {
     std::map<std::string, std::string> all;
-    std::ifstream in(CINCH_GOLDEN);
+    std::ifstream in(CINCH_GOLDEN_FILE);
     for (std::string hash, name; in >> hash && std::getline(in >> std::ws, name);)
         all[name] = hash;
     return all;
@@ -70,7 +69,7 @@ public:
         static std::map<std::string, std::string> all = recorded();
         if (is_writing()) {
             all[name] = hash.text();
-            std::ofstream out(CINCH_GOLDEN);
+            std::ofstream out(CINCH_GOLDEN_FILE);
             for (const auto& [n, h] : all)
                 out << h << ' ' << n << '\n';
             return;
@@ -81,17 +80,17 @@ public:
 };
 
 // Multiples of 2^-20, so that no function of the mathematical library has a say.
-struct Scene {
+struct Drawn {
     DeformableSurface surface;
     std::vector<std::vector<AffineMap>> frames;
 };
 
 // A bumpy grid over a cube's side, each vertex moved by its nearest nodes of a coarser grid, whose maps turn, shear, grow and shift at random.
-Scene drawn(std::size_t side, std::size_t nodes_a_side, std::uint64_t seed, Vec3 at)
+Drawn drawn(std::size_t side, std::size_t nodes_a_side, std::uint64_t seed, Vec3 at)
 {
     std::mt19937_64 random(seed);
     auto uniform = [&](double most) { return most * (static_cast<double>(random() >> 43) * 0x1p-20 - 1); };
-    Scene out;
+    Drawn out;
     TriangleMesh& mesh = out.surface.mesh;
     const double step = 1.0 / static_cast<double>(std::bit_ceil(side));
     for (std::size_t i = 0; i <= side; ++i)
@@ -134,9 +133,9 @@ Scene drawn(std::size_t side, std::size_t nodes_a_side, std::uint64_t seed, Vec3
 constexpr Methods methods[] = {Method::convex, Method::sphere, Method::corners, Method::eq12, Method::limited, Method::local, Method::support,
                                Method::linear, Method::best, Method::vertices, Method::local | Method::support};
 
-void hash_bounds(Golden& golden, const std::string& scene, const Scene& drawn)
+void hash_bounds(Golden& golden, const std::string& scene, const Drawn& body)
 {
-    const Bvh bvh = build_bvh(drawn.surface, 4);
+    const Bvh bvh = build_bvh(body.surface, 4);
     for (const Methods method : methods)
         for (const Precision precision : {Precision::float32, Precision::float64})
             for (const int k : {6, 14, 18, 26})
@@ -145,9 +144,9 @@ void hash_bounds(Golden& golden, const std::string& scene, const Scene& drawn)
                         continue;
                     RefitOptions options{method, k, rounding, precision};
                     std::vector<double> supports(bvh.bvs.size() * static_cast<std::size_t>(k));
-                    Refitter refitter(bvh, drawn.surface, options);
+                    Refitter refitter(bvh, body.surface, options);
                     Hash hash;
-                    for (const auto& maps : drawn.frames) {
+                    for (const auto& maps : body.frames) {
                         refitter(maps, supports);
                         for (const double s : supports)
                             hash.add(s);
@@ -159,17 +158,17 @@ void hash_bounds(Golden& golden, const std::string& scene, const Scene& drawn)
     for (const Method method : {Method::eq12, Method::limited}) {
         std::vector<double> supports(bvh.bvs.size() * 6);
         Hash hash;
-        for (const auto& maps : drawn.frames) {
-            refit(bvh, drawn.surface, maps, {method, 6, Rounding::proven, Precision::float32, 1, RestShape::obb}, supports);
+        for (const auto& maps : body.frames) {
+            refit(bvh, body.surface, maps, {method, 6, Rounding::proven, Precision::float32, 1, RestShape::obb}, supports);
             for (const double s : supports)
                 hash.add(s);
         }
         golden.check("bounds of " + scene + ", " + std::string(name_of(method)) + ", oriented boxes", hash);
     }
     Hash hash;
-    Refitter refitter(bvh, drawn.surface, {Method::best, 6, Rounding::proven, Precision::float32, 3, RestShape::aabb, true});
+    Refitter refitter(bvh, body.surface, {Method::best, 6, Rounding::proven, Precision::float32, 3, RestShape::aabb, true});
     std::vector<double> supports(bvh.bvs.size() * 6);
-    for (const auto& maps : drawn.frames) {
+    for (const auto& maps : body.frames) {
         refitter(maps, supports);
         for (const double s : supports)
             hash.add(s);
@@ -192,7 +191,7 @@ template <class F> void on_every_target(F&& test)
 TEST_CASE("bounds keep their bits")
 {
     Golden golden;
-    const Scene few = drawn(12, 3, 1, Vec3(0, 0, 0)), many = drawn(24, 16, 2, Vec3(1000, -20, 3));
+    const Drawn few = drawn(12, 3, 1, Vec3(0, 0, 0)), many = drawn(24, 16, 2, Vec3(1000, -20, 3));
     on_every_target([&] {
         hash_bounds(golden, "few nodes", few);
         hash_bounds(golden, "many nodes, far from the origin", many);
@@ -202,7 +201,7 @@ TEST_CASE("bounds keep their bits")
 TEST_CASE("pairs keep their order")
 {
     Golden golden;
-    const Scene bodies[] = {drawn(20, 5, 3, Vec3(0, 0, 0)), drawn(20, 5, 4, Vec3(0.25, 0.125, 0)), drawn(9, 4, 5, Vec3(-0.25, 0.25, 0.03125))};
+    const Drawn bodies[] = {drawn(20, 5, 3, Vec3(0, 0, 0)), drawn(20, 5, 4, Vec3(0.25, 0.125, 0)), drawn(9, 4, 5, Vec3(-0.25, 0.25, 0.03125))};
     on_every_target([&] {
         for (const Method method : {Method::best, Method::eq12, Method::vertices})
             for (const Precision precision : {Precision::float32, Precision::float64}) {
@@ -210,12 +209,12 @@ TEST_CASE("pairs keep their order")
                 options.methods = method;
                 options.precision = precision;
                 Collider collider(options);
-                for (const Scene& body : bodies)
+                for (const Drawn& body : bodies)
                     collider.add(build_bvh(body.surface, ClusterSize{}), body.surface);
                 Hash hash;
                 for (std::size_t f = 0; f < bodies[0].frames.size(); ++f) {
                     std::vector<BodyFrame> frames;
-                    for (const Scene& body : bodies)
+                    for (const Drawn& body : bodies)
                         frames.push_back({body.frames[f], {}});
                     collider.update(frames);
                     const auto pairs = collider.pairs();
@@ -234,13 +233,15 @@ TEST_CASE("simulated frames keep their bits")
 {
     Golden golden;
     for (const char* const name : {"beam", "brain-pull-65", "fishes", "pile", "sheet", "skin", "twist-180"}) {
-        const std::string file = std::string(CINCH_DATA) + "/scenes/" + name + ".json";
-        Simulation simulation(read_scene(file), file);
+        const std::string folder = std::string(CINCH_DATA) + "/scenes", file = folder + "/" + name + ".json";
+        std::ifstream in(file);
+        const std::string text{std::istreambuf_iterator<char>(in), {}};
+        Simulation simulation(parse_scene(text, file, folder), file);
         Hash hash;
         for (int frame = 0; frame < 3; ++frame) {
             for (const StepReport& report : simulation.advance())
                 REQUIRE(report.failure.empty());
-            for (const Simulation::Body& body : simulation.bodies())
+            for (Simulation::Body& body : simulation.bodies())
                 for (const AffineMap& map : body.simulation.frame())
                     hash.add(map);
         }
