@@ -12,7 +12,7 @@
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/or_leave.hpp"
 #include "experiments/report/provenance.hpp"
-#include "toolkit/bounds/kernel/bound_kernel.hpp"
+#include "toolkit/deform/kernel/targets.hpp"
 #include "toolkit/surface/input_error.hpp"
 
 namespace {

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "commit.hpp"
-#include "toolkit/bounds/kernel/bound_kernel.hpp"
+#include "toolkit/deform/kernel/targets.hpp"
 
 namespace cinch {
 namespace {

@@ -6,9 +6,9 @@
 
 #include "tests/collide/pair_cases.hpp"
 #include "tests/support.hpp"
-#include "toolkit/bounds/kernel/bound_kernel.hpp"
 #include "toolkit/collide/kernel/cluster_kernel.hpp"
 #include "toolkit/deform/aligned.hpp"
+#include "toolkit/deform/kernel/targets.hpp"
 #include "toolkit/hierarchy/kernel/leaf_kernel.hpp"
 
 using namespace cinch;

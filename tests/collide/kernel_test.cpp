@@ -6,11 +6,11 @@
 
 #include "tests/collide/random_bodies.hpp"
 #include "tests/support.hpp"
-#include "toolkit/bounds/kernel/bound_kernel.hpp"
 #include "toolkit/bounds/rounding.hpp"
 #include "toolkit/collide/kernel/box_kernel.hpp"
 #include "toolkit/collide/kernel/cluster_kernel.hpp"
 #include "toolkit/deform/aligned.hpp"
+#include "toolkit/deform/kernel/targets.hpp"
 #include "toolkit/hierarchy/dop.hpp"
 #include "toolkit/hierarchy/kernel/leaf_kernel.hpp"
 

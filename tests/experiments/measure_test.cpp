@@ -12,7 +12,7 @@
 #include "experiments/measure/race.hpp"
 #include "tests/support.hpp"
 #include "toolkit/bounds/bound_box.hpp"
-#include "toolkit/bounds/kernel/bound_kernel.hpp"
+#include "toolkit/deform/kernel/targets.hpp"
 #include "toolkit/hierarchy/refit.hpp"
 
 using namespace cinch;

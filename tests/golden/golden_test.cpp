@@ -11,8 +11,8 @@
 #include <catch2/catch.hpp>
 
 #include "tests/support.hpp"
-#include "toolkit/bounds/kernel/bound_kernel.hpp"
 #include "toolkit/collide/collider.hpp"
+#include "toolkit/deform/kernel/targets.hpp"
 #include "toolkit/hierarchy/refit.hpp"
 #include "toolkit/simulate/simulation.hpp"
 

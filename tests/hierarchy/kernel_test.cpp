@@ -4,8 +4,8 @@
 #include <catch2/catch.hpp>
 
 #include "tests/collide/random_bodies.hpp"
-#include "toolkit/bounds/kernel/bound_kernel.hpp"
 #include "toolkit/bounds/kernel/project_kernel.hpp"
+#include "toolkit/deform/kernel/targets.hpp"
 
 using namespace cinch;
 using namespace cinch::test;

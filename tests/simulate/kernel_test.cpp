@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "tests/simulate/bodies.hpp"
-#include "toolkit/bounds/kernel/bound_kernel.hpp"
+#include "toolkit/deform/kernel/targets.hpp"
 
 using namespace cinch;
 using test::lattice_body;

@@ -3,8 +3,6 @@
 
 #include <optional>
 #include <span>
-#include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -43,11 +41,5 @@ void bound_packed(const KernelInput<T>& input, std::size_t first, std::size_t la
 /// relative to maps->origin, rounded up. Whatever is not finite gives +∞. Guards are not asked.
 template <class T>
 void bound_packed(const KernelInput<T>& input, std::span<const std::uint32_t> list, KernelScratch<T>& scratch, std::size_t side, float* dops);
-
-/// The instruction sets that this machine can run, best first, and the one in use.
-std::vector<std::string> kernel_targets();
-std::string kernel_target();
-/// Uses only this target from now on; empty lifts it. False if there is none of that name here.
-bool force_kernel_target(std::string_view name);
 
 } // namespace cinch

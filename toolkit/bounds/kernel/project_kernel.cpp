@@ -7,8 +7,7 @@
 
 #include "toolkit/bounds/rounding.hpp"
 
-// As the kernels of the bounds.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#include "toolkit/deform/kernel/disabled_targets.hpp"
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "toolkit/bounds/kernel/project_kernel.cpp"
 #include <hwy/foreach_target.h>

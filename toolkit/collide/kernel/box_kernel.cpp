@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "toolkit/collide/kernel/box_kernel.hpp"
 
-// As the kernels of the bounds.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#include "toolkit/deform/kernel/disabled_targets.hpp"
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "toolkit/collide/kernel/box_kernel.cpp"
 #include <hwy/foreach_target.h>

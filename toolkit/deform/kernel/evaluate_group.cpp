@@ -3,8 +3,7 @@
 
 #include <cmath>
 
-// As the kernels of the bounds.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#include "toolkit/deform/kernel/disabled_targets.hpp"
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "toolkit/deform/kernel/evaluate_group.cpp"
 #include <hwy/foreach_target.h>
