@@ -32,7 +32,7 @@ struct BlockResult {
 class BvCheck {
 public:
     explicit BvCheck(const Frame& frame)
-        : frame_(frame), boxes_(frame.methods.within(box_methods) && frame.shape == RestShape::aabb), weight_space_(frame.methods.within(box_methods | Method::local)),
+        : frame_(frame), boxes_(frame.methods.within(box_methods) && frame.shape == RestShape::aabb), weight_space_(frame.methods.within(weight_space_methods)),
           place_(frame.surface.weights.node_count)
     {
     }

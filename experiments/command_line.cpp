@@ -9,6 +9,7 @@
 
 #include "experiments/collide/backend.hpp"
 #include "experiments/report/table.hpp"
+#include "toolkit/bounds/directions.hpp"
 #include "toolkit/deform/motion.hpp"
 #include "toolkit/surface/shapes.hpp"
 
@@ -176,9 +177,9 @@ void add_methods(CLI::App& command, Methods& methods)
     command.add_option_function<std::string>("--method", [&methods](const std::string& text) {
         const auto named = named_methods(text);
         if (!named)
-            throw CLI::ValidationError("--method", fmt::format("expected one or more, joined by '+', of {}, found '{}'", fmt::join(method_names, ", "), text));
+            throw CLI::ValidationError("--method", fmt::format("expected one or more, joined by '+', of {}, found '{}'", fmt::join(method_names(), ", "), text));
         methods = *named;
-    }, wrapped(fmt::format("{}, or several joined by '+', whose bounds are intersected [best]", fmt::join(method_names, ", "))))->option_text("NAME");
+    }, wrapped(fmt::format("{}, or several joined by '+', whose bounds are intersected [best]", fmt::join(method_names(), ", "))))->option_text("NAME");
 }
 
 void add_verify(CLI::App& app, VerifyOptions& o)
@@ -191,7 +192,7 @@ void add_verify(CLI::App& app, VerifyOptions& o)
     option("--rest", o.rest_shape, "rest boxes of convex, eq12 and limited: aabb or obb [aabb]")
         ->transform(one_of<RestShape>({{"aabb", RestShape::aabb}, {"obb", RestShape::obb}}))->option_text("SHAPE");
     command.add_flag("--remember", o.remember, wrapped("begin the search for lambda where the last frame left it"));
-    option("--kdop", o.kdop, "directions of the bounds: 6, 14, 18 or 26 [6]")->check(CLI::IsMember({6, 14, 18, 26}))->option_text("K");
+    option("--kdop", o.kdop, "directions of the bounds: " + kdop_names() + " [6]")->check(CLI::IsMember(std::vector(kdops.begin(), kdops.end())))->option_text("K");
     option("--update", o.update, "whose bounds: refit (all BVs by the methods), or those that stand after a collision query between a scene's bodies: lazy (a cut by the methods, "
            "merged above it, on demand below), front (all on demand), full (all merged from the vertices) [refit]")
         ->transform(one_of<VerifiedUpdate>({{"refit", VerifiedUpdate::refit}, {"lazy", VerifiedUpdate::lazy}, {"full", VerifiedUpdate::full}, {"front", VerifiedUpdate::front}}))
@@ -236,7 +237,7 @@ void add_tightness(CLI::App& app, TightnessOptions& o)
         for (const std::string& text : texts) {
             const auto named = named_methods(text);
             if (!named)
-                throw CLI::ValidationError("--methods", fmt::format("expected names of {}, or several joined by '+', found '{}'", fmt::join(method_names, ", "), text));
+                throw CLI::ValidationError("--methods", fmt::format("expected names of {}, or several joined by '+', found '{}'", fmt::join(method_names(), ", "), text));
             o.methods.push_back(*named);
         }
     }, wrapped("which to compare [sphere,eq12,limited,local,support,linear,best]"))->delimiter(',')->option_text("NAME,...");
@@ -261,7 +262,7 @@ void add_cost(CLI::App& app, CostOptions& o, CostSimulationOptions& s)
 {
     CLI::App& command = *app.add_subcommand("cost", "what accuracy costs in time");
     add_input(command, o.input);
-    command.add_option("--kdops", o.kdops, wrapped("directions of the bounds [6,14,18,26]"))->delimiter(',')->check(CLI::IsMember({6, 14, 18, 26}))->option_text("K,...");
+    command.add_option("--kdops", o.kdops, wrapped(fmt::format("directions of the bounds [{}]", fmt::join(kdops, ","))))->delimiter(',')->check(CLI::IsMember(std::vector(kdops.begin(), kdops.end())))->option_text("K,...");
     command.add_option("--seconds", o.seconds, wrapped("of measuring per k [2]"))->check(CLI::Range(0.001, 1e6))->option_text("X");
     command.add_option("--leaf", o.leaf, wrapped("most triangles per leaf [16]"))->check(CLI::Range(1, 1000000))->option_text("N");
     command.add_option("--simulation", s.scene, wrapped("of this scene instead: step size, integrator and energy against error and time"))->option_text("SCENE");

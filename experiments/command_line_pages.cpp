@@ -4,6 +4,7 @@
 
 #include "experiments/command_line.hpp"
 #include "experiments/simulation/find_scene.hpp"
+#include "toolkit/bounds/directions.hpp"
 #include "toolkit/surface/shapes.hpp"
 
 namespace cinch {
@@ -21,13 +22,13 @@ void add_view(CLI::App& app, ViewOptions& o)
     command.add_flag("--json", o.json, wrapped("the views as JSON Lines on standard output and nothing else"));
     option("--frames", o.request.frames, "how many at most, evenly spread, the first and the last included [60]")->check(CLI::Range(1, 10000))->option_text("N")->needs(scene);
     option("--levels", o.request.levels, "levels of the BVH, from the root [8]")->check(CLI::Range(1, 16))->option_text("N")->needs(scene);
-    option("--kdop", o.request.kdop, "greatest k to choose from on the page: 6, 14, 18 or 26 [6]")->check(CLI::IsMember({6, 14, 18, 26}))->option_text("K")->needs(scene);
+    option("--kdop", o.request.kdop, "greatest k to choose from on the page: " + kdop_names() + " [6]")->check(CLI::IsMember(std::vector(kdops.begin(), kdops.end())))->option_text("K")->needs(scene);
     command.add_option_function<std::vector<std::string>>("--methods", [&o](const std::vector<std::string>& names) {
         o.request.methods.clear();
         for (const std::string& name : names) {
             const auto method = named_method(name);
             if (!method || *method == Method::vertices)
-                throw CLI::ValidationError("--methods", fmt::format("expected names of {}, found '{}'", fmt::join(std::span(method_names).first(9), ", "), name));
+                throw CLI::ValidationError("--methods", fmt::format("expected names of {}, found '{}'", fmt::join(method_names(all_methods.without(Method::vertices)), ", "), name));
             o.request.methods.push_back(*method);
         }
         o.request.method = o.request.methods.front();

@@ -33,7 +33,13 @@ struct Size {
 constexpr Size sizes[] = {{"brain-3500", "3.5K", 3500}, {"brain-30000", "30K", 30000}, {"brain-145000", "145K", 145000}};
 
 // Names in the order of the table; "unproven" is the default method without its error terms.
-const std::vector<std::string> contestants = {"textbook", "textbook-axes", "convex", "sphere", "corners", "eq12", "limited", "local", "support", "linear", "best", "unproven", "optimal"};
+const std::vector<std::string> contestants = [] {
+    std::vector<std::string> names{"textbook", "textbook-axes"};
+    for (const Method method : all_methods.without(Method::vertices))
+        names.emplace_back(name_of(method));
+    names.insert(names.end(), {"unproven", "optimal"});
+    return names;
+}();
 
 struct Times {
     std::map<std::string, double> ns;
@@ -70,7 +76,7 @@ template <class T> Times measure(const Input& input, const ScalingOptions& optio
     const RestSpheres spheres = rest_spheres(bvh, input.surface);
     BoundScratch scratch;
     std::map<std::string, Kernel<T>> kernels;
-    for (const Method method : {Method::convex, Method::eq12, Method::limited, Method::local, Method::support, Method::linear, Method::best}) {
+    for (const Method method : kernel_methods) {
         throw_if_interrupted();
         kernels.try_emplace(std::string(name_of(method)), bvh, input.surface, frame, method, Rounding::proven, options.passes);
     }

@@ -39,7 +39,10 @@ struct Run { ///< one motion and number of nodes
     bool is_complete() const { return frames_done == frames; }
 };
 
-const std::vector<Methods> usual = {Method::sphere, Method::eq12, Method::limited, Method::local, Method::support, Method::linear, Method::best};
+const std::vector<Methods> usual = [] {
+    const Methods all = all_methods.without(Method::convex | Method::corners | Method::vertices);
+    return std::vector<Methods>(all.begin(), all.end());
+}();
 
 double radius(std::span<const double> supports)
 {

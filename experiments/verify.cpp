@@ -49,7 +49,7 @@ public:
         : is_default_(options.methods == Method::best && options.rest_shape == RestShape::aabb),
           looser_(bvh.bvs.size() * static_cast<std::size_t>(options.kdop)), tighter_(looser_)
     {
-        for (const Method method : {Method::convex, Method::eq12, Method::limited}) {
+        for (const Method method : ladder_methods) {
             RefitOptions rung = options;
             rung.methods = method;
             rungs_.emplace_back(bvh, surface, rung);

@@ -8,6 +8,7 @@
 #include "experiments/input.hpp"
 #include "experiments/measure/baselines.hpp"
 #include "toolkit/bounds/bound_box.hpp"
+#include "toolkit/bounds/directions.hpp"
 #include "toolkit/deform/evaluate.hpp"
 #include "toolkit/hierarchy/packed_bvh.hpp"
 
@@ -46,7 +47,7 @@ template <class T> void kernel(benchmark::State& state, Method method, int kdop,
     ProjectedMaps<T> maps;
     project(std::span<const AffineMap>(s.frame), packed.rest, kdop, rounding, maps);
     KernelScratch<T> scratch;
-    double supports[26];
+    double supports[most_directions];
     for (auto _ : state) {
         bound_packed<T>({packed.bvs, packed.node, packed.value, &maps, rounding, 1}, 0, 1, scratch, std::span(supports).first(static_cast<std::size_t>(kdop)));
         benchmark::DoNotOptimize(supports);
@@ -103,8 +104,8 @@ int main(int argc, char** argv)
     sized(benchmark::RegisterBenchmark("textbook/axes", textbook, TransformedBox::axes));
     for (const Method method : {Method::eq12, Method::limited})
         sized(benchmark::RegisterBenchmark(("readable/" + std::string(name_of(method))).c_str(), readable, method));
-    for (const Method method : {Method::convex, Method::eq12, Method::limited, Method::local, Method::support, Method::linear, Method::best})
-        for (const int kdop : {6, 14, 18, 26}) {
+    for (const Method method : kernel_methods)
+        for (const int kdop : kdops) {
             const std::string name = std::string(name_of(method)) + "/k" + std::to_string(kdop);
             sized(benchmark::RegisterBenchmark(("float/" + name).c_str(), kernel<float>, method, kdop, Rounding::proven));
             sized(benchmark::RegisterBenchmark(("double/" + name).c_str(), kernel<double>, method, kdop, Rounding::proven));

@@ -5,13 +5,14 @@
 
 #include "experiments/input.hpp"
 #include "experiments/report/record_output.hpp"
+#include "toolkit/bounds/directions.hpp"
 #include "toolkit/hierarchy/refit.hpp"
 
 namespace cinch {
 
 struct CostOptions {
     InputOptions input;
-    std::vector<int> kdops = {6, 14, 18, 26};
+    std::vector<int> kdops{cinch::kdops.begin(), cinch::kdops.end()};
     double seconds = 2;     ///< of measuring per k
     std::size_t leaf = 16;  ///< triangles
     bool all_scenes = true; ///< the gap of the dual evaluation on every shipped shape, not on the input alone

@@ -38,7 +38,7 @@ template <class T> void add(const CostSample& sample, int kdop, const std::vecto
 std::vector<CostContestant> kernel_contestants(const CostSample& sample, int kdop)
 {
     std::vector<CostContestant> all;
-    for (const Method method : {Method::convex, Method::eq12, Method::limited, Method::local, Method::support, Method::linear, Method::best}) {
+    for (const Method method : kernel_methods) {
         throw_if_interrupted();
         const auto kinds = choose_kinds(sample.bvh, sample.surface, method);
         add<float>(sample, kdop, kinds, method, all);

@@ -157,7 +157,7 @@ void bound_on_grid(const CostSample& sample, int kdop, Method method, std::span<
 std::vector<CostContestant> scalar_contestants(const CostSample& sample, int kdop)
 {
     std::vector<CostContestant> all;
-    for (const Method method : {Method::convex, Method::eq12, Method::limited}) {
+    for (const Method method : ladder_methods) {
         auto add = [&](const char* arithmetic, const char* guarantee, bool proven, auto&& bound) {
             all.push_back({std::string(name_of(method)), arithmetic, guarantee, proven, std::forward<decltype(bound)>(bound)});
         };

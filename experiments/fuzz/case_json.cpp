@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/fuzz/fuzz_case.hpp"
+#include "toolkit/bounds/directions.hpp"
 #include "toolkit/surface/input_error.hpp"
 
 namespace cinch {
@@ -81,8 +82,8 @@ FuzzCase fuzz_case_from_json(const std::string& text, const std::string& file)
         };
         const std::size_t n = whole("n", 1, 65535);
         out.kdop = static_cast<int>(whole("kdop", 6, 26));
-        if (out.kdop != 6 && out.kdop != 14 && out.kdop != 18 && out.kdop != 26)
-            throw InputError::in_file(file, fmt::format("field kdop: {} is none of 6, 14, 18 and 26", out.kdop));
+        if (!is_kdop(out.kdop))
+            throw InputError::in_file(file, fmt::format("field kdop: {} is none of {}", out.kdop, kdop_names()));
         out.trial = root.contains("trial") ? static_cast<std::uint32_t>(whole("trial", 0, surface_trials)) : 0;
         out.passes = root.contains("passes") ? static_cast<int>(whole("passes", 1, 100)) : 1;
         for (const json& p : root.at("rest")) {

@@ -112,7 +112,7 @@ std::string surface_fault(const FuzzCase& problem, Defect defect)
     for (const Precision precision : {Precision::float64, Precision::float32}) {
         if (wanted()) {
             std::vector<double> looser;
-            for (const Method method : {Method::convex, Method::eq12, Method::limited}) {
+            for (const Method method : ladder_methods) {
                 const std::vector<double> supports = bounds_of(method, precision, 1);
                 if (std::string fault = fault_of(method, precision, supports); !fault.empty())
                     return fault;
@@ -123,10 +123,10 @@ std::string surface_fault(const FuzzCase& problem, Defect defect)
             }
         }
         if (wanted())
-            for (const Method method : {Method::convex, Method::eq12, Method::limited})
+            for (const Method method : ladder_methods)
                 if (std::string fault = fault_of(method, precision, bounds_of(method, precision, 1, RestShape::obb), RestShape::obb); !fault.empty())
                     return "oriented boxes: " + fault;
-        for (const Method method : {Method::local, Method::support, Method::linear, Method::best}) {
+        for (const Method method : kernel_methods.without(ladder_methods)) {
             if (!wanted())
                 continue;
             if (std::string fault = fault_of(method, precision, bounds_of(method, precision, problem.passes)); !fault.empty())

@@ -45,7 +45,7 @@ StabilityProof prove(const std::vector<StabilityState>& states)
         if (bvh.bvs.empty())
             continue;
         const exact::Verifier verifier(state.surface, bvh, throw_if_interrupted);
-        for (const Method method : {Method::convex, Method::eq12, Method::limited, Method::local, Method::support, Method::linear, Method::best})
+        for (const Method method : kernel_methods)
             for (const Precision precision : {Precision::float32, Precision::float64})
                 for (const int kdop : {6, 14}) {
                     Refitter refit(bvh, state.surface, {method, kdop, Rounding::proven, precision});

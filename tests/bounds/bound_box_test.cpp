@@ -5,6 +5,7 @@
 
 #include "toolkit/bounds/bound_box.hpp"
 #include "toolkit/bounds/bound_vertex.hpp"
+#include "toolkit/bounds/directions.hpp"
 #include "toolkit/bounds/rounding.hpp"
 
 using namespace cinch;
@@ -38,7 +39,7 @@ TEST_CASE("the axes are those of the standard k-DOPs")
         CHECK(std::abs(axis[0]) + std::abs(axis[1]) + std::abs(axis[2]) == 3);
     for (const Axis& axis : axes_of(18).subspan(3))
         CHECK(std::abs(axis[0]) + std::abs(axis[1]) + std::abs(axis[2]) == 2);
-    for (int k : {6, 14, 18, 26})
+    for (int k : kdops)
         for (std::size_t a = 0; a < 3; ++a)
             CHECK(axes_of(k)[a] == all_axes[a]);
     CHECK_FALSE(is_kdop(8));
@@ -46,7 +47,7 @@ TEST_CASE("the axes are those of the standard k-DOPs")
 
 TEST_CASE("identity maps bound the rest box, up to the guard")
 {
-    for (Method method : {Method::convex, Method::eq12, Method::limited}) {
+    for (Method method : ladder_methods) {
         const auto s = Bounded{}.supports(method, 26);
         const double wanted[] = {1.5, -0.5, 2.25, -1.75, 3.125, -2.875, 6.875, -5.125};
         for (std::size_t d = 0; d < 8; ++d) {
@@ -69,7 +70,7 @@ TEST_CASE("moving one node moves the bound by its greatest weight, and by all fo
 
 TEST_CASE("a map that is not finite gives infinite supports, one that overflows in the directions it reaches")
 {
-    for (Method method : {Method::convex, Method::corners, Method::eq12, Method::limited})
+    for (Method method : box_methods)
         for (int r = 0; r < 3; ++r)
             for (int c = 0; c < 4; ++c) {
                 for (double x : {std::numeric_limits<double>::quiet_NaN(), infinite, -infinite}) {

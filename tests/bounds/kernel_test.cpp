@@ -3,6 +3,7 @@
 
 #include "tests/support.hpp"
 #include "toolkit/bounds/bound_box.hpp"
+#include "toolkit/bounds/directions.hpp"
 #include "toolkit/bounds/kernel/bound_kernel.hpp"
 #include "toolkit/deform/kernel/targets.hpp"
 #include "toolkit/hierarchy/packed_bvh.hpp"
@@ -11,7 +12,7 @@ using namespace cinch;
 
 namespace {
 
-constexpr Method kinds[] = {Method::convex, Method::eq12, Method::limited, Method::local, Method::support, Method::linear, Method::best};
+constexpr Methods kinds = kernel_methods;
 
 struct Scene {
     test::Example e = test::example(900, 70); // BVs of 5 to 70 simulation nodes, so blocks with and without repeated ones
@@ -44,7 +45,7 @@ TEST_CASE("the same bits on every target of this machine")
     REQUIRE(targets.size() >= 1);
     CAPTURE(targets);
     for (Method kind : kinds)
-        for (int kdop : {6, 14, 18, 26})
+        for (int kdop : kdops)
             for (Rounding rounding : {Rounding::proven, Rounding::plain})
                 for (int passes : {0, 1, 3}) {
                     std::vector<std::vector<double>> single, twice;
@@ -71,7 +72,7 @@ TEST_CASE("kernels agree with the readable form")
 {
     const Scene scene;
     BoundScratch scratch;
-    for (Method kind : {Method::convex, Method::eq12, Method::limited})
+    for (Method kind : ladder_methods)
         for (int kdop : {6, 26}) {
             const auto fast = scene.bounds<double>(kind, kdop, Rounding::proven, 1), single = scene.bounds<float>(kind, kdop, Rounding::proven, 1);
             const auto k = static_cast<std::size_t>(kdop);

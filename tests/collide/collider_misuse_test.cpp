@@ -157,8 +157,7 @@ TEST_CASE("a BVH that is moved in is kept for every method")
 {
     const Bodies bodies = some_bodies(2);
     const std::vector<Pairs> truth = bodies.truth();
-    for (const Method method : {Method::convex, Method::sphere, Method::corners, Method::eq12, Method::limited, Method::local, Method::support, Method::linear, Method::best,
-                                Method::vertices}) {
+    for (const Method method : all_methods) {
         LazyOptions options;
         options.methods = method;
         options.update = Update::lazy;

@@ -6,6 +6,7 @@
 
 #include "tests/collide/random_bodies.hpp"
 #include "tests/support.hpp"
+#include "toolkit/bounds/directions.hpp"
 #include "toolkit/bounds/rounding.hpp"
 #include "toolkit/collide/kernel/box_kernel.hpp"
 #include "toolkit/collide/kernel/cluster_kernel.hpp"
@@ -201,7 +202,7 @@ TEST_CASE("k-DOPs are apart if and only if their supports say so, on every targe
 {
     Dice dice(72);
     const auto targets = kernel_targets();
-    for (const int kdop : {6, 14, 18, 26}) {
+    for (const int kdop : kdops) {
         const std::size_t side = dop_side(kdop), floats = dop_floats(kdop), half = static_cast<std::size_t>(kdop) / 2;
         constexpr std::size_t bvs = 64;
         AlignedVector<float> a(bvs * floats, 0.0f), b(a), shift(floats, 0.0f);

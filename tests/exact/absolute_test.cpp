@@ -16,7 +16,7 @@ TEST_CASE("absolute supports are at most the relative ones about their origin, e
     std::mt19937_64 random(11);
     std::uniform_real_distribution<double> uniform(-1, 1);
     std::size_t below = 0;
-    for (const int k : {6, 14, 18, 26})
+    for (const int k : kdops)
         for (const double far : {0.0, 1e-9, 1.0, 1e7, 1e15})
             for (int i = 0; i < 200; ++i) {
                 const Vec3 origin(far * uniform(random), far * uniform(random), far * uniform(random));

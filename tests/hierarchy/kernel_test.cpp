@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "tests/collide/random_bodies.hpp"
+#include "toolkit/bounds/directions.hpp"
 #include "toolkit/bounds/kernel/project_kernel.hpp"
 #include "toolkit/deform/kernel/targets.hpp"
 
@@ -52,7 +53,7 @@ TEST_CASE("trees, their leaves and slots: the same bits on every target of this 
     const DeformableSurface surface = patchy(dice, brain(150), 13, 6);
     const std::vector<Maps> frames = hard_maps(dice, 13);
     for (const std::size_t lanes : {4u, 8u, 16u})
-        for (const int kdop : {6, 14, 18, 26})
+        for (const int kdop : kdops)
             for (const Update update : {Update::lazy, Update::full}) {
                 const Bvh bvh = build_bvh(surface, ClusterSize{lanes, lanes}, RestDetail::inner);
                 check_targets([&] {
@@ -92,7 +93,7 @@ TEST_CASE("projected maps: the same bits on every target of this machine")
 {
     Dice dice(62);
     for (const std::size_t nodes : {1u, 2u, 3u, 4u, 5u, 7u, 8u, 9u, 33u})
-        for (const int kdop : {6, 14, 18, 26})
+        for (const int kdop : kdops)
             for (const Vec3& rest_origin : {Vec3(0, 0, 0), Vec3(1e5, -3, 0.1)}) {
                 const RestExtent rest{rest_origin, {1, 2, 0.5}, rest_origin.cwiseAbs() + Vec3(1, 2, 0.5), 5};
                 std::vector<Maps> frames = hard_maps(dice, std::max<std::size_t>(nodes, 5));

@@ -11,6 +11,7 @@
 #include <tbb/task_arena.h>
 
 #include "tests/support.hpp"
+#include "toolkit/bounds/directions.hpp"
 #include "toolkit/bounds/rounding.hpp"
 #include "toolkit/deform/evaluate.hpp"
 #include "toolkit/hierarchy/refit.hpp"
@@ -26,8 +27,11 @@ std::vector<double> refitted(const Bvh& bvh, const test::Example& e, std::size_t
     return supports;
 }
 
-constexpr Methods methods[] = {Method::convex, Method::sphere, Method::corners, Method::eq12, Method::limited, Method::local,
-                               Method::support, Method::linear, Method::best, Method::vertices, Method::local | Method::support};
+const std::vector<Methods> methods = [] {
+    std::vector<Methods> all(all_methods.begin(), all_methods.end());
+    all.push_back(Method::local | Method::support);
+    return all;
+}();
 constexpr Precision precisions[] = {Precision::float32, Precision::float64};
 
 std::vector<std::pair<Methods, Precision>> every_choice()
@@ -50,7 +54,7 @@ TEST_CASE("in doubles vertices ≤ limited ≤ eq12 ≤ convex, and every comput
     const test::Example e = test::example(600, 40);
     const Bvh bvh = build_bvh(e.surface, 3);
     for (std::size_t frame : {0u, 1u, 2u})
-        for (int k : {6, 14, 18, 26}) {
+        for (int k : kdops) {
             std::vector<std::vector<double>> s;
             const auto truth = refitted(bvh, e, frame, {Method::vertices, k, Rounding::plain});
             for (Precision precision : precisions) {
@@ -110,7 +114,7 @@ TEST_CASE("a map that is not finite in any one entry makes all bounds of the BVs
     choices.emplace_back(Method::corners | Method::eq12, Precision::float32);
     choices.emplace_back(Method::corners | Method::vertices, Precision::float32);
     for (const auto& [method, precision] : choices)
-        for (const int k : {6, 14, 18, 26}) {
+        for (const int k : kdops) {
             INFO(name_of(method) << ", k " << k);
             const auto places = static_cast<std::size_t>(k);
             Refitter refit(bvh, e.surface, {method, k, Rounding::proven, precision});

@@ -17,9 +17,6 @@ namespace {
 
 constexpr std::size_t tests_per_task = 512, clusters_per_task = 128, tasks_at_once = 64;
 
-/// With these alone a tree copies what it needs of its BVH.
-constexpr Methods kernel_methods = Method::convex | Method::eq12 | Method::limited | Method::local | Method::support | Method::linear | Method::best;
-
 /// What must not be less than the truth, where two opposite infinities met.
 double outward(double x) { return std::isnan(x) ? infinite : x; }
 
@@ -29,7 +26,7 @@ void Collider::add(const Bvh& bvh, const DeformableSurface& surface) { add(bvh, 
 
 void Collider::add(Bvh&& bvh, const DeformableSurface& surface)
 {
-    if (options_.methods.within(kernel_methods))
+    if (options_.methods.within(kernel_methods)) // then the tree copies what it needs of its BVH
         return add(bvh, nullptr, surface);
     auto own = std::make_unique<const Bvh>(std::move(bvh));
     const Bvh& kept = *own;

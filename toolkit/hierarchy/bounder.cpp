@@ -11,6 +11,7 @@
 
 #include "toolkit/bounds/bound_box.hpp"
 #include "toolkit/bounds/bound_vertex.hpp"
+#include "toolkit/bounds/directions.hpp"
 #include "toolkit/bounds/rounding.hpp"
 #include "toolkit/hierarchy/dop.hpp"
 #include "toolkit/hierarchy/packed_bvh.hpp"
@@ -78,7 +79,7 @@ struct Bounder::Parts {
     void bound_otherwise(std::size_t bv, std::span<double> supports) const
     {
         const auto axes = axes_of(options.kdop);
-        double other[26];
+        double other[most_directions];
         const auto own = std::span(other).first(k());
         if (options.methods.contains(Method::corners)) {
             bound_box(bvh.rest(bv), maps, Method::corners, options.rounding, axes, scratch.local(), own);
@@ -89,7 +90,7 @@ struct Bounder::Parts {
             intersect<double>(supports, own);
         }
         if (options.methods.contains(Method::vertices)) {
-            double most[26];
+            double most[most_directions];
             std::fill_n(most, k(), -infinite);
             for (const std::uint32_t v : vertices_of(surface, bvh, bvh.bvs[bv])) {
                 bound_vertex(surface.mesh.vertices[v], surface.weights.of(v), maps, options.rounding, axes, own);
@@ -106,14 +107,13 @@ Bounder::Bounder(const Bvh& bvh, const DeformableSurface& surface, const RefitOp
     : parts_(new Parts{bvh, surface, options, rest_extent(bvh, surface, options.rest_shape), leaves == Leaves::included ? Octets::wanted : Octets::left_out, {}, {}, {}, {}, {}, {}, {}})
 {
     if (!is_kdop(options.kdop))
-        throw std::invalid_argument("refit: k must be 6, 14, 18 or 26");
+        throw std::invalid_argument("k must be " + kdop_names());
     require_default_arithmetic();
-    const bool by_points = options.methods.contains(Method::support) || options.methods.contains(Method::linear) || options.methods.contains(Method::best);
-    if ((bvh.detail == RestDetail::boxes && (by_points || options.methods.contains(Method::local))) ||
-        (bvh.detail == RestDetail::inner && by_points && leaves == Leaves::included))
+    if ((bvh.detail == RestDetail::boxes && need(options.methods, RestNeed::local)) ||
+        (bvh.detail == RestDetail::inner && need(options.methods, RestNeed::points) && leaves == Leaves::included))
         throw std::invalid_argument("refit: the BVH was built without the rest data that these methods need (RestDetail)");
     const Precision precision = precision_for(bvh, options.precision);
-    for (const Method method : {Method::convex, Method::eq12, Method::limited, Method::local, Method::support, Method::linear, Method::best}) {
+    for (const Method method : kernel_methods) {
         if (!options.methods.contains(method))
             continue;
         if (precision == Precision::float32)
@@ -161,7 +161,7 @@ void Bounder::bound(std::size_t first, std::size_t last, std::span<double> suppo
     const std::size_t k = p.k();
     std::fill(supports.begin(), supports.end(), infinite);
     constexpr std::size_t block = 64;
-    double own[block * 26];
+    double own[block * most_directions];
     auto by_kernels = [&](const auto& parts, const auto& maps) {
         for (const auto& part : parts) {
             const auto& place = part->packed.place; // without leaves a BV does not stand where it does in the tree
@@ -201,7 +201,7 @@ void Bounder::bound(std::span<const std::uint32_t> list, float* dops) const
     // Several at once, or what has no kernel: in the world, and from there to the origin, rounded up at every step.
     const auto axes = axes_of(p.options.kdop);
     for (const std::uint32_t bv : list) {
-        double supports[26];
+        double supports[most_directions];
         bound(bv, bv + 1, std::span(supports).first(p.k()));
         for (std::size_t d = 0; d < p.k(); ++d) {
             double sum = supports[d];

@@ -143,10 +143,10 @@ std::vector<ChosenKind> choose_kinds(const Bvh& bvh, const DeformableSurface& su
             chosen[i].start = start[i];
         return chosen;
     }
-    constexpr Method kinds[] = {Method::linear, Method::support, Method::local};
-    Trial trial[3];
-    std::vector<double> start[3];
-    for (std::size_t k = 0; k < 3; ++k)
+    const std::vector<Method> kinds = tightest_first(chosen_methods);
+    std::vector<Trial> trial(kinds.size());
+    std::vector<std::vector<double>> start(kinds.size());
+    for (std::size_t k = 0; k < kinds.size(); ++k)
         trial[k] = calibrate(bvh, surface, kinds[k], frames, start[k]);
     for (std::size_t i = 0; i < chosen.size(); ++i) {
         auto both = [&](std::size_t a, std::size_t b) { // width of the intersection
@@ -159,13 +159,13 @@ std::vector<ChosenKind> choose_kinds(const Bvh& bvh, const DeformableSurface& su
             return width;
         };
         std::size_t best = 0;
-        for (std::size_t k = 1; k < 3; ++k)
+        for (std::size_t k = 1; k < kinds.size(); ++k)
             if (trial[k].width[i] < trial[best].width[i])
                 best = k;
         chosen[i] = {kinds[best], {}, start[best][i], 0, false, policy.guarded};
         double width = policy.worth_twice * trial[best].width[i];
-        for (std::size_t a = 0; a < 3; ++a)
-            for (std::size_t b = a + 1; b < 3; ++b)
+        for (std::size_t a = 0; a < kinds.size(); ++a)
+            for (std::size_t b = a + 1; b < kinds.size(); ++b)
                 if (const double w = both(a, b); w < width) {
                     width = w;
                     chosen[i] = {kinds[a], kinds[b], start[a][i], start[b][i], false, policy.guarded};

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "toolkit/bounds/bound_vertex.hpp"
+#include "toolkit/bounds/directions.hpp"
 #include "toolkit/bounds/rounding.hpp"
 #include "toolkit/deform/parallel.hpp"
 #include "toolkit/hierarchy/bounder.hpp"
@@ -59,7 +60,7 @@ struct Refitter::Parts {
 Refitter::Refitter(const Bvh& bvh, const DeformableSurface& surface, const RefitOptions& options) : parts_(new Parts{bvh, surface, options, {}})
 {
     if (!is_kdop(options.kdop))
-        throw std::invalid_argument("refit: k must be 6, 14, 18 or 26");
+        throw std::invalid_argument("k must be " + kdop_names());
     require_default_arithmetic();
     if (options.methods == Method::vertices)
         return;

@@ -13,6 +13,7 @@
 #include "experiments/report/view/grid.hpp"
 #include "experiments/report/view/pack.hpp"
 #include "experiments/simulation/find_scene.hpp"
+#include "toolkit/bounds/directions.hpp"
 #include "toolkit/collide/collider.hpp"
 #include "toolkit/deform/parallel.hpp"
 #include "toolkit/deform/surface_evaluator.hpp"
@@ -248,7 +249,7 @@ Json shown_first(const ViewRequest& request, std::size_t frames, std::size_t lev
 void require_valid(const ViewRequest& request)
 {
     if (request.frames < 1 || request.levels < 1 || request.bits < 8 || request.bits > 16 || !is_kdop(request.kdop) || request.methods.empty())
-        throw std::invalid_argument("view: frames and levels of at least 1, 8 to 16 bits, k = 6, 14, 18 or 26, and a method are needed");
+        throw std::invalid_argument("view: frames and levels of at least 1, 8 to 16 bits, k = " + kdop_names() + ", and a method are needed");
     if (std::find(request.methods.begin(), request.methods.end(), request.method) == request.methods.end())
         throw std::invalid_argument("view: the method shown first is not among the methods");
 }
