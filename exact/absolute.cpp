@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "exact/number.hpp"
-#include "toolkit/bounds/directions.hpp"
+#include "cinch/bounds.hpp"
 
 namespace cinch::exact {
 

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "toolkit/deform/surface.hpp"
+#include "cinch/surface.hpp"
 
 namespace cinch::exact {
 

@@ -4,8 +4,8 @@
 #include <span>
 #include <string>
 
-#include "toolkit/bounds/method.hpp"
-#include "toolkit/hierarchy/bvh.hpp"
+#include "cinch/bounds.hpp"
+#include "cinch/bvh.hpp"
 
 namespace cinch::exact {
 

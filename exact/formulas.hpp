@@ -7,7 +7,7 @@
 
 #include "exact/number.hpp"
 #include "toolkit/bounds/bound_box.hpp"
-#include "toolkit/deform/weights.hpp"
+#include "cinch/surface.hpp"
 
 namespace cinch::exact {
 

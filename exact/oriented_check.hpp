@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "exact/formulas.hpp"
-#include "toolkit/bounds/rest_bv.hpp"
+#include "cinch/bvh.hpp"
 
 namespace cinch::exact {
 

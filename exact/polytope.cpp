@@ -11,7 +11,7 @@
 
 #include "exact/formulas.hpp"
 #include "exact/rest_data.hpp"
-#include "toolkit/bounds/directions.hpp"
+#include "cinch/bounds.hpp"
 
 namespace cinch::exact {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "toolkit/hierarchy/bvh.hpp"
+#include "cinch/bvh.hpp"
 
 namespace cinch::exact {
 

@@ -6,9 +6,9 @@
 
 #include "exact/bv_check.hpp"
 #include "exact/rest_data.hpp"
-#include "toolkit/deform/evaluate.hpp"
+#include "cinch/deform.hpp"
 #include "toolkit/deform/parallel.hpp"
-#include "toolkit/surface/arithmetic.hpp"
+#include "cinch/environment.hpp"
 
 namespace cinch::exact {
 std::string name_of(Statement statement)

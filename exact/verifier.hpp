@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "toolkit/bounds/method.hpp"
-#include "toolkit/hierarchy/bvh.hpp"
+#include "cinch/bounds.hpp"
+#include "cinch/bvh.hpp"
 
 namespace cinch::exact {
 

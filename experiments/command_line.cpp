@@ -9,7 +9,7 @@
 
 #include "experiments/collide/backend.hpp"
 #include "experiments/report/table.hpp"
-#include "toolkit/bounds/directions.hpp"
+#include "cinch/bounds.hpp"
 #include "toolkit/deform/motion.hpp"
 #include "toolkit/surface/shapes.hpp"
 

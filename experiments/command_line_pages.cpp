@@ -4,7 +4,7 @@
 
 #include "experiments/command_line.hpp"
 #include "experiments/simulation/find_scene.hpp"
-#include "toolkit/bounds/directions.hpp"
+#include "cinch/bounds.hpp"
 #include "toolkit/surface/shapes.hpp"
 
 namespace cinch {

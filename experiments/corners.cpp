@@ -12,8 +12,9 @@
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/whole_file.hpp"
 #include "toolkit/bounds/rounding.hpp"
-#include "toolkit/surface/arithmetic.hpp"
-#include "toolkit/surface/input_error.hpp"
+#include "cinch/environment.hpp"
+#include "cinch/surface.hpp"
+#include "toolkit/bounds/weight_space.hpp"
 
 namespace cinch {
 namespace {

@@ -18,6 +18,7 @@
 #include "toolkit/surface/character.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 #include "toolkit/surface/shapes.hpp"
+#include "toolkit/surface/triangle_mesh.hpp"
 
 namespace cinch {
 namespace {

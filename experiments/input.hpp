@@ -7,8 +7,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "toolkit/deform/surface.hpp"
-#include "toolkit/deform/weights.hpp"
+#include "cinch/surface.hpp"
 #include "toolkit/surface/skin.hpp"
 
 namespace cinch {

@@ -13,7 +13,7 @@
 #include "experiments/report/or_leave.hpp"
 #include "experiments/report/provenance.hpp"
 #include "toolkit/deform/kernel/targets.hpp"
-#include "toolkit/surface/input_error.hpp"
+#include "cinch/surface.hpp"
 
 namespace {
 

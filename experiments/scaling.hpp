@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "experiments/report/record_output.hpp"
-#include "toolkit/hierarchy/refit.hpp"
+#include "cinch/refit.hpp"
 
 namespace cinch {
 

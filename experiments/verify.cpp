@@ -22,8 +22,8 @@
 #include "experiments/verify_report.hpp"
 #include "toolkit/bounds/rounding.hpp"
 #include "toolkit/deform/dyadic.hpp"
-#include "toolkit/hierarchy/refit.hpp"
-#include "toolkit/surface/input_error.hpp"
+#include "cinch/refit.hpp"
+#include "cinch/surface.hpp"
 
 namespace cinch {
 

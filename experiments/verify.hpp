@@ -3,7 +3,7 @@
 
 #include "experiments/input.hpp"
 #include "experiments/report/record_output.hpp"
-#include "toolkit/hierarchy/refit.hpp"
+#include "cinch/refit.hpp"
 
 namespace cinch {
 

@@ -8,8 +8,10 @@
 #include "exact/check_failed.hpp"
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/progress.hpp"
-#include "toolkit/collide/collider.hpp"
-#include "toolkit/surface/input_error.hpp"
+#include "cinch/collider.hpp"
+#include "cinch/surface.hpp"
+#include "toolkit/collide/collider_parts.hpp"
+#include "toolkit/hierarchy/lazy_refit.hpp"
 
 namespace cinch {
 namespace {
@@ -120,14 +122,14 @@ void verify_lazy(const Inputs& inputs, const VerifyOptions& options, VerifyTotal
         }
         collider.update(frames);
         for (std::size_t b = 0; b < frames.size(); ++b)
-            proofs[b]->note_merged(collider.trees()[b]);
+            proofs[b]->note_merged(collider.parts().trees()[b]);
         VerifyTotals now = totals; // kept if the frame is whole, all bodies of it
         LazyTotals lazy_now = lazy;
         lazy_now.pairs += collider.pairs().size();
         for (std::size_t b = 0; b < frames.size(); ++b) {
             if (f == 0)
                 add_levels(proofs[b]->bvh(), now);
-            proofs[b]->check(collider.trees()[b], frames[b].maps, options, now, lazy_now);
+            proofs[b]->check(collider.parts().trees()[b], frames[b].maps, options, now, lazy_now);
         }
         totals = std::move(now);
         lazy = lazy_now;

@@ -5,7 +5,7 @@
 
 #include "experiments/report/number.hpp"
 #include "experiments/report/table.hpp"
-#include "toolkit/bounds/directions.hpp"
+#include "cinch/bounds.hpp"
 
 namespace cinch {
 namespace {

@@ -11,7 +11,7 @@
 #include "experiments/report/number.hpp"
 #include "experiments/report/record_output.hpp"
 #include "experiments/report/whole_file.hpp"
-#include "toolkit/surface/input_error.hpp"
+#include "cinch/surface.hpp"
 
 namespace cinch {
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "toolkit/hierarchy/bvh.hpp"
+#include "cinch/bvh.hpp"
 
 namespace cinch {
 

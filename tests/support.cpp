@@ -13,6 +13,7 @@
 #include "toolkit/deform/motion.hpp"
 #include "toolkit/deform/sample_nodes.hpp"
 #include "toolkit/surface/shapes.hpp"
+#include "toolkit/surface/triangle_mesh.hpp"
 
 namespace cinch::test {
 

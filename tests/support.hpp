@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "toolkit/deform/surface.hpp"
+#include "cinch/surface.hpp"
 
 namespace cinch::test {
 

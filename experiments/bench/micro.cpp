@@ -8,8 +8,8 @@
 #include "experiments/input.hpp"
 #include "experiments/measure/baselines.hpp"
 #include "toolkit/bounds/bound_box.hpp"
-#include "toolkit/bounds/directions.hpp"
-#include "toolkit/deform/evaluate.hpp"
+#include "cinch/bounds.hpp"
+#include "cinch/deform.hpp"
 #include "toolkit/hierarchy/packed_bvh.hpp"
 
 using namespace cinch;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "experiments/input.hpp"
-#include "toolkit/collide/collider.hpp"
+#include "cinch/collider.hpp"
 
 namespace cinch {
 

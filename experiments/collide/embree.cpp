@@ -9,7 +9,7 @@
 #include <embree3/rtcore.h>
 
 #include "experiments/collide/positions.hpp"
-#include "toolkit/surface/input_error.hpp"
+#include "cinch/surface.hpp"
 
 namespace cinch {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "experiments/collide/backend.hpp"
 #include "toolkit/collide/triangle_pair.hpp"
-#include "toolkit/deform/surface_evaluator.hpp"
+#include "cinch/deform.hpp"
 
 namespace cinch {
 

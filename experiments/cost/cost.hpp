@@ -5,8 +5,8 @@
 
 #include "experiments/input.hpp"
 #include "experiments/report/record_output.hpp"
-#include "toolkit/bounds/directions.hpp"
-#include "toolkit/hierarchy/refit.hpp"
+#include "cinch/bounds.hpp"
+#include "cinch/refit.hpp"
 
 namespace cinch {
 

@@ -14,6 +14,7 @@
 #include "experiments/cost/numbers.hpp"
 #include "toolkit/bounds/bound_box.hpp"
 #include "toolkit/bounds/rounding.hpp"
+#include "toolkit/bounds/weight_space.hpp"
 
 namespace cinch {
 namespace {

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/fuzz/fuzz_case.hpp"
-#include "toolkit/bounds/directions.hpp"
-#include "toolkit/surface/input_error.hpp"
+#include "cinch/bounds.hpp"
+#include "cinch/surface.hpp"
 
 namespace cinch {
 namespace {

@@ -8,6 +8,7 @@
 #include "toolkit/deform/dyadic.hpp"
 #include "toolkit/deform/sample_nodes.hpp"
 #include "toolkit/surface/shapes.hpp"
+#include "toolkit/surface/triangle_mesh.hpp"
 
 namespace cinch {
 namespace {

@@ -5,8 +5,9 @@
 #include "exact/check_space.hpp"
 #include "exact/verifier.hpp"
 #include "experiments/fuzz/fuzz_case.hpp"
+#include "toolkit/bounds/weight_space.hpp"
 #include "toolkit/deform/dyadic.hpp"
-#include "toolkit/hierarchy/refit.hpp"
+#include "cinch/refit.hpp"
 
 namespace cinch {
 namespace {

@@ -18,7 +18,7 @@
 #include "experiments/report/number.hpp"
 #include "experiments/report/provenance.hpp"
 #include "experiments/report/whole_file.hpp"
-#include "toolkit/surface/input_error.hpp"
+#include "cinch/surface.hpp"
 
 namespace cinch {
 namespace {

@@ -7,8 +7,9 @@
 #include <Eigen/Core>
 
 #include "toolkit/deform/aligned.hpp"
-#include "toolkit/deform/surface.hpp"
-#include "toolkit/hierarchy/bvh.hpp"
+#include "cinch/surface.hpp"
+#include "cinch/bvh.hpp"
+#include "toolkit/surface/triangle_mesh.hpp"
 
 namespace cinch {
 

@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 #include "experiments/report/interrupt.hpp"
-#include "toolkit/surface/input_error.hpp"
+#include "cinch/surface.hpp"
 
 namespace cinch {
 

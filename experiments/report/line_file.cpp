@@ -6,7 +6,7 @@
 #include <zlib.h>
 
 #include "experiments/report/whole_file.hpp"
-#include "toolkit/surface/input_error.hpp"
+#include "cinch/surface.hpp"
 
 namespace cinch {
 

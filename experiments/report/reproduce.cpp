@@ -19,7 +19,7 @@
 #include "experiments/report/results.hpp"
 #include "experiments/report/stages.hpp"
 #include "experiments/report/whole_file.hpp"
-#include "toolkit/surface/input_error.hpp"
+#include "cinch/surface.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 
 namespace cinch {

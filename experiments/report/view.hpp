@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "toolkit/bounds/method.hpp"
+#include "cinch/bounds.hpp"
 
 namespace cinch {
 

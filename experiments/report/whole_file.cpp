@@ -18,7 +18,7 @@
 #include <unistd.h>
 
 #include "toolkit/simulate/frame_file.hpp"
-#include "toolkit/surface/input_error.hpp"
+#include "cinch/surface.hpp"
 
 namespace cinch {
 namespace {

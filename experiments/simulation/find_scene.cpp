@@ -10,7 +10,7 @@
 #include "experiments/report/whole_file.hpp"
 #include "experiments/shipped.hpp"
 #include "toolkit/simulate/frame_file.hpp"
-#include "toolkit/surface/input_error.hpp"
+#include "cinch/surface.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 
 namespace cinch {

@@ -12,7 +12,7 @@
 
 #include "experiments/report/provenance.hpp"
 #include "toolkit/simulate/stream.hpp"
-#include "toolkit/surface/input_error.hpp"
+#include "cinch/surface.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 
 namespace cinch {

@@ -6,7 +6,7 @@
 
 #include "experiments/report/whole_file.hpp"
 #include "experiments/simulation/simulate.hpp"
-#include "toolkit/deform/surface_evaluator.hpp"
+#include "cinch/deform.hpp"
 #include "toolkit/simulate/frame_file.hpp"
 
 namespace cinch {

@@ -14,7 +14,7 @@
 #include "experiments/report/provenance.hpp"
 #include "experiments/report/table.hpp"
 #include "experiments/simulation/frame_output.hpp"
-#include "toolkit/surface/input_error.hpp"
+#include "cinch/surface.hpp"
 
 namespace cinch {
 namespace {

@@ -9,10 +9,11 @@
 #include "experiments/simulation/plain_step.hpp"
 #include "toolkit/deform/motion.hpp"
 #include "toolkit/deform/sample_nodes.hpp"
-#include "toolkit/deform/surface_evaluator.hpp"
+#include "cinch/deform.hpp"
 #include "toolkit/simulate/body_simulation.hpp"
 #include "toolkit/simulate/effects/effects.hpp"
 #include "toolkit/surface/shapes.hpp"
+#include "toolkit/surface/triangle_mesh.hpp"
 
 namespace cinch {
 namespace {

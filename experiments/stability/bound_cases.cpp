@@ -4,13 +4,13 @@
 #include <cfenv>
 
 #include "experiments/stability/bodies.hpp"
-#include "toolkit/bounds/directions.hpp"
+#include "cinch/bounds.hpp"
+#include "toolkit/bounds/weight_space.hpp"
 #include "toolkit/deform/dyadic.hpp"
 #include "toolkit/deform/motion.hpp"
-#include "toolkit/deform/weights.hpp"
-#include "toolkit/hierarchy/refit.hpp"
-#include "toolkit/surface/arithmetic.hpp"
-#include "toolkit/surface/input_error.hpp"
+#include "cinch/surface.hpp"
+#include "cinch/refit.hpp"
+#include "cinch/environment.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 
 #if defined(__SSE__)

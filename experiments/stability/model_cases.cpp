@@ -3,8 +3,7 @@
 #include <numbers>
 
 #include "experiments/stability/bodies.hpp"
-#include "toolkit/deform/weights.hpp"
-#include "toolkit/surface/input_error.hpp"
+#include "cinch/surface.hpp"
 
 namespace cinch {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "experiments/stability/bodies.hpp"
 #include "toolkit/simulate/scene.hpp"
-#include "toolkit/surface/input_error.hpp"
+#include "cinch/surface.hpp"
 
 namespace cinch {
 namespace {

@@ -13,8 +13,8 @@
 #include "experiments/report/progress.hpp"
 #include "experiments/report/provenance.hpp"
 #include "experiments/report/table.hpp"
-#include "toolkit/hierarchy/refit.hpp"
-#include "toolkit/surface/input_error.hpp"
+#include "cinch/refit.hpp"
+#include "cinch/surface.hpp"
 
 namespace cinch {
 namespace {

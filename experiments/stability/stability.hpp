@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "experiments/report/record_output.hpp"
-#include "toolkit/deform/surface.hpp"
+#include "cinch/surface.hpp"
 
 namespace cinch {
 

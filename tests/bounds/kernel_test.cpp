@@ -3,7 +3,7 @@
 
 #include "tests/support.hpp"
 #include "toolkit/bounds/bound_box.hpp"
-#include "toolkit/bounds/directions.hpp"
+#include "cinch/bounds.hpp"
 #include "toolkit/bounds/kernel/bound_kernel.hpp"
 #include "toolkit/deform/kernel/targets.hpp"
 #include "toolkit/hierarchy/packed_bvh.hpp"

@@ -7,7 +7,7 @@
 #include <catch2/catch.hpp>
 
 #include "toolkit/bounds/rounding.hpp"
-#include "toolkit/surface/arithmetic.hpp"
+#include "cinch/environment.hpp"
 
 #if defined(__SSE2__)
 #include <xmmintrin.h>

@@ -6,7 +6,9 @@
 #include <set>
 #include <sstream>
 
-#include "toolkit/deform/evaluate.hpp"
+#include "cinch/deform.hpp"
+#include "toolkit/collide/collider_parts.hpp"
+#include "toolkit/hierarchy/lazy_refit.hpp"
 
 namespace cinch::test {
 namespace {
@@ -168,7 +170,7 @@ std::vector<Bvh> Bodies::trees(ClusterSize leaf, RestDetail detail) const
 Pairs in_order_of_trees(const Collider& collider, const Pairs& truth)
 {
     const std::set<TrianglePair> wanted(truth.begin(), truth.end());
-    const auto trees = collider.trees();
+    const auto trees = collider.parts().trees();
     Pairs out;
     for (std::uint32_t i = 0; i < trees.size(); ++i)
         for (std::uint32_t j = i + 1; j < trees.size(); ++j) {

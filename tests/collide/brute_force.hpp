@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "toolkit/collide/collider.hpp"
+#include "cinch/collider.hpp"
 #include "toolkit/collide/triangle_pair.hpp"
-#include "toolkit/deform/surface.hpp"
+#include "cinch/surface.hpp"
 
 namespace cinch::test {
 

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "tests/collide/random_bodies.hpp"
+#include "toolkit/collide/collider_parts.hpp"
 
 using namespace cinch;
 using namespace cinch::test;
@@ -283,7 +284,7 @@ TEST_CASE("small bodies that touch a large one from outside: their origins are a
     for (std::size_t b = 0; b < trees.size(); ++b)
         collider.add(trees[b], bodies.surface[b]);
     collider.update(bodies.frame[0]);
-    CHECK((collider.trees()[0].origin() - collider.trees()[1].origin()).norm() > 1000);
+    CHECK((collider.parts().trees()[0].origin() - collider.parts().trees()[1].origin()).norm() > 1000);
 }
 
 TEST_CASE("nothing, one triangle, points and segments, all centroids alike, soups")

@@ -8,6 +8,7 @@
 #include "tests/support.hpp"
 #include "toolkit/simulate/simulation.hpp"
 #include "toolkit/surface/read_mesh.hpp"
+#include "toolkit/surface/triangle_mesh.hpp"
 
 using namespace cinch;
 using namespace cinch::test;

@@ -6,7 +6,9 @@
 #include <tbb/task_arena.h>
 
 #include "tests/collide/random_bodies.hpp"
-#include "toolkit/bounds/directions.hpp"
+#include "cinch/bounds.hpp"
+#include "toolkit/collide/collider_parts.hpp"
+#include "toolkit/hierarchy/lazy_refit.hpp"
 
 using namespace cinch;
 using namespace cinch::test;
@@ -230,7 +232,7 @@ TEST_CASE("any and leaves: right, stopped where told, and no obstacle for what i
                         REQUIRE(std::binary_search(truth[f].begin(), truth[f].end(), first[0]));
                     REQUIRE(collider.any() == found);
                     std::size_t deformed = 0;
-                    for (const LazyRefit& tree : collider.trees())
+                    for (const LazyRefit& tree : collider.parts().trees())
                         deformed += tree.counts().leaves;
                     REQUIRE(collider.counts().updates.leaves == deformed); // of the frame, not of the queries
 

@@ -6,7 +6,7 @@
 
 #include "tests/collide/random_bodies.hpp"
 #include "tests/support.hpp"
-#include "toolkit/bounds/directions.hpp"
+#include "cinch/bounds.hpp"
 #include "toolkit/bounds/rounding.hpp"
 #include "toolkit/collide/kernel/box_kernel.hpp"
 #include "toolkit/collide/kernel/cluster_kernel.hpp"

@@ -2,8 +2,9 @@
 #include <catch2/catch.hpp>
 
 #include "tests/collide/random_bodies.hpp"
-#include "toolkit/bounds/directions.hpp"
+#include "cinch/bounds.hpp"
 #include "toolkit/collide/pair_front.hpp"
+#include "toolkit/hierarchy/lazy_refit.hpp"
 
 using namespace cinch;
 using namespace cinch::test;

@@ -9,7 +9,7 @@
 #include <rapidcheck/catch.h>
 
 #include "toolkit/deform/dyadic.hpp"
-#include "toolkit/deform/weights.hpp"
+#include "cinch/surface.hpp"
 
 using namespace cinch;
 

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "tests/support.hpp"
-#include "toolkit/deform/evaluate.hpp"
+#include "cinch/deform.hpp"
 
 using namespace cinch;
 

@@ -10,14 +10,6 @@ using namespace cinch;
 
 namespace {
 
-Vec3 apply(const AffineMap& map, const Vec3& p)
-{
-    Vec3 out;
-    for (int r = 0; r < 3; ++r)
-        out[r] = map.m[r][0] * p[0] + map.m[r][1] * p[1] + map.m[r][2] * p[2] + map.m[r][3];
-    return out;
-}
-
 Vec3 moved(const Motion& motion, const Vec3& p) { return apply(linearise(motion, p), p); }
 
 } // namespace

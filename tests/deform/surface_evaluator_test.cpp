@@ -7,9 +7,8 @@
 #include <type_traits>
 
 #include "tests/support.hpp"
-#include "toolkit/deform/evaluate.hpp"
+#include "cinch/deform.hpp"
 #include "toolkit/deform/kernel/targets.hpp"
-#include "toolkit/deform/surface_evaluator.hpp"
 
 using namespace cinch;
 

@@ -6,7 +6,7 @@
 
 #include "exact/absolute.hpp"
 #include "exact/number.hpp"
-#include "toolkit/bounds/directions.hpp"
+#include "cinch/bounds.hpp"
 
 using namespace cinch;
 using exact::Exact;

@@ -8,7 +8,7 @@
 #include "exact/optimum.hpp"
 #include "toolkit/bounds/bound_vertex.hpp"
 #include "toolkit/deform/dyadic.hpp"
-#include "toolkit/deform/evaluate.hpp"
+#include "cinch/deform.hpp"
 
 using namespace cinch;
 using namespace cinch::exact;

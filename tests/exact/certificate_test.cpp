@@ -6,7 +6,7 @@
 #include "exact/certificate.hpp"
 #include "exact/sha256.hpp"
 #include "tests/support.hpp"
-#include "toolkit/hierarchy/refit.hpp"
+#include "cinch/refit.hpp"
 
 using namespace cinch;
 using namespace cinch::exact;

@@ -7,7 +7,7 @@
 #include "exact/explain.hpp"
 #include "exact/verifier.hpp"
 #include "tests/support.hpp"
-#include "toolkit/hierarchy/refit.hpp"
+#include "cinch/refit.hpp"
 
 using namespace cinch;
 using namespace cinch::exact;

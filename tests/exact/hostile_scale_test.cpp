@@ -6,7 +6,7 @@
 
 #include "exact/verifier.hpp"
 #include "toolkit/bounds/rounding.hpp"
-#include "toolkit/hierarchy/refit.hpp"
+#include "cinch/refit.hpp"
 
 using namespace cinch;
 

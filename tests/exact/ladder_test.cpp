@@ -6,7 +6,7 @@
 #include "exact/formulas.hpp"
 #include "exact/optimum.hpp"
 #include "tests/support.hpp"
-#include "toolkit/hierarchy/bvh.hpp"
+#include "cinch/bvh.hpp"
 
 using namespace cinch;
 using namespace cinch::exact;

@@ -6,7 +6,7 @@
 
 #include "exact/number.hpp"
 #include "tests/support.hpp"
-#include "toolkit/hierarchy/bvh.hpp"
+#include "cinch/bvh.hpp"
 
 using namespace cinch;
 using cinch::exact::Exact;

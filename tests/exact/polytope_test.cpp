@@ -3,7 +3,7 @@
 
 #include "exact/polytope.hpp"
 #include "tests/support.hpp"
-#include "toolkit/hierarchy/refit.hpp"
+#include "cinch/refit.hpp"
 
 using namespace cinch;
 using namespace cinch::exact;

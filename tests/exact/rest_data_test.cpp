@@ -14,8 +14,8 @@
 #include "exact/oriented_check.hpp"
 #include "exact/verifier.hpp"
 #include "tests/support.hpp"
-#include "toolkit/deform/weights.hpp"
-#include "toolkit/hierarchy/refit.hpp"
+#include "cinch/surface.hpp"
+#include "cinch/refit.hpp"
 
 using namespace cinch;
 using namespace cinch::exact;

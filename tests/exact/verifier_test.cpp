@@ -13,10 +13,10 @@
 
 #include "exact/verifier.hpp"
 #include "tests/support.hpp"
-#include "toolkit/bounds/directions.hpp"
+#include "cinch/bounds.hpp"
 #include "toolkit/deform/dyadic.hpp"
-#include "toolkit/deform/evaluate.hpp"
-#include "toolkit/hierarchy/refit.hpp"
+#include "cinch/deform.hpp"
+#include "cinch/refit.hpp"
 
 #if defined(__SSE2__)
 #include <xmmintrin.h>

@@ -12,8 +12,9 @@
 #include "experiments/measure/race.hpp"
 #include "tests/support.hpp"
 #include "toolkit/bounds/bound_box.hpp"
+#include "toolkit/bounds/weight_space.hpp"
 #include "toolkit/deform/kernel/targets.hpp"
-#include "toolkit/hierarchy/refit.hpp"
+#include "cinch/refit.hpp"
 
 using namespace cinch;
 using nlohmann::json;

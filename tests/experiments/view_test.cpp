@@ -12,7 +12,7 @@
 #include "experiments/report/view/grid.hpp"
 #include "experiments/report/view/pack.hpp"
 #include "tests/support.hpp"
-#include "toolkit/surface/input_error.hpp"
+#include "cinch/surface.hpp"
 
 using namespace cinch;
 using Json = nlohmann::ordered_json;

@@ -14,7 +14,7 @@
 #include "experiments/report/whole_file.hpp"
 #include "tests/support.hpp"
 #include "toolkit/simulate/frame_file.hpp"
-#include "toolkit/surface/input_error.hpp"
+#include "cinch/surface.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 
 using namespace cinch;

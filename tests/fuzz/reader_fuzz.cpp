@@ -3,9 +3,8 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "toolkit/deform/weights.hpp"
+#include "cinch/surface.hpp"
 #include "toolkit/surface/character.hpp"
-#include "toolkit/surface/input_error.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 #include "toolkit/surface/skin.hpp"
 

@@ -11,10 +11,10 @@
 #include <catch2/catch.hpp>
 
 #include "tests/support.hpp"
-#include "toolkit/bounds/directions.hpp"
-#include "toolkit/collide/collider.hpp"
+#include "cinch/bounds.hpp"
+#include "cinch/collider.hpp"
 #include "toolkit/deform/kernel/targets.hpp"
-#include "toolkit/hierarchy/refit.hpp"
+#include "cinch/refit.hpp"
 #include "toolkit/simulate/simulation.hpp"
 
 using namespace cinch;

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "tests/support.hpp"
-#include "toolkit/hierarchy/bvh.hpp"
+#include "cinch/bvh.hpp"
 #include "toolkit/surface/shapes.hpp"
 
 using namespace cinch;

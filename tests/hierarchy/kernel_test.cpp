@@ -4,9 +4,10 @@
 #include <catch2/catch.hpp>
 
 #include "tests/collide/random_bodies.hpp"
-#include "toolkit/bounds/directions.hpp"
+#include "cinch/bounds.hpp"
 #include "toolkit/bounds/kernel/project_kernel.hpp"
 #include "toolkit/deform/kernel/targets.hpp"
+#include "toolkit/hierarchy/lazy_refit.hpp"
 
 using namespace cinch;
 using namespace cinch::test;

@@ -4,8 +4,9 @@
 
 #include "tests/collide/clipper.hpp"
 #include "tests/collide/random_bodies.hpp"
-#include "toolkit/bounds/directions.hpp"
-#include "toolkit/deform/evaluate.hpp"
+#include "cinch/bounds.hpp"
+#include "cinch/deform.hpp"
+#include "toolkit/hierarchy/lazy_refit.hpp"
 
 using namespace cinch;
 using namespace cinch::test;

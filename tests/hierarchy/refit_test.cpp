@@ -11,10 +11,10 @@
 #include <tbb/task_arena.h>
 
 #include "tests/support.hpp"
-#include "toolkit/bounds/directions.hpp"
+#include "cinch/bounds.hpp"
 #include "toolkit/bounds/rounding.hpp"
-#include "toolkit/deform/evaluate.hpp"
-#include "toolkit/hierarchy/refit.hpp"
+#include "cinch/deform.hpp"
+#include "cinch/refit.hpp"
 
 using namespace cinch;
 

@@ -11,15 +11,16 @@
 
 #include "tests/simulate/bodies.hpp"
 #include "tests/support.hpp"
-#include "toolkit/collide/collider.hpp"
-#include "toolkit/deform/evaluate.hpp"
+#include "cinch/collider.hpp"
+#include "cinch/deform.hpp"
 #include "toolkit/deform/motion.hpp"
 #include "toolkit/deform/sample_nodes.hpp"
-#include "toolkit/deform/surface_evaluator.hpp"
-#include "toolkit/hierarchy/refit.hpp"
+#include "cinch/refit.hpp"
 #include "toolkit/surface/character.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 #include "toolkit/surface/shapes.hpp"
+#include "toolkit/surface/skin.hpp"
+#include "toolkit/surface/triangle_mesh.hpp"
 
 #if defined(__SSE2__)
 #include <xmmintrin.h>

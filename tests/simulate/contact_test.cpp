@@ -10,11 +10,11 @@
 #include <nlohmann/json.hpp>
 #include <tbb/global_control.h>
 
-#include "toolkit/collide/collider.hpp"
-#include "toolkit/deform/evaluate.hpp"
+#include "cinch/collider.hpp"
+#include "cinch/deform.hpp"
 #include "toolkit/simulate/find_inside.hpp"
 #include "toolkit/simulate/simulation.hpp"
-#include "toolkit/surface/input_error.hpp"
+#include "cinch/surface.hpp"
 #include "toolkit/surface/shapes.hpp"
 
 #include "tests/simulate/bodies.hpp"

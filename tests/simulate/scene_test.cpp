@@ -9,7 +9,7 @@
 
 #include "toolkit/simulate/frame_file.hpp"
 #include "toolkit/simulate/simulation.hpp"
-#include "toolkit/surface/input_error.hpp"
+#include "cinch/surface.hpp"
 
 #include "tests/support.hpp"
 

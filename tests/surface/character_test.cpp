@@ -5,6 +5,8 @@
 #include <catch2/catch.hpp>
 
 #include "tests/surface/gltf_example.hpp"
+#include "toolkit/surface/character.hpp"
+#include "toolkit/surface/triangle_mesh.hpp"
 
 using namespace cinch;
 using namespace cinch::test;

@@ -4,9 +4,11 @@
 #include <cmath>
 #include <random>
 
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
 #include "tests/surface/gltf_example.hpp"
+#include "toolkit/surface/character.hpp"
 
 using namespace cinch;
 using namespace cinch::test;

@@ -10,10 +10,9 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/support.hpp"
-#include "toolkit/deform/evaluate.hpp"
-#include "toolkit/deform/weights.hpp"
+#include "cinch/deform.hpp"
+#include "cinch/surface.hpp"
 #include "toolkit/surface/character.hpp"
-#include "toolkit/surface/input_error.hpp"
 
 namespace cinch::test {
 

@@ -7,6 +7,7 @@
 #include <catch2/catch.hpp>
 
 #include "tests/surface/gltf_example.hpp"
+#include "toolkit/surface/character.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 
 using namespace cinch;

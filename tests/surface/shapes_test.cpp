@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "toolkit/surface/shapes.hpp"
+#include "toolkit/surface/triangle_mesh.hpp"
 
 using namespace cinch;
 

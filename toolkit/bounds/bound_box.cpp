@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "toolkit/bounds/rounding.hpp"
+#include "toolkit/bounds/weight_space.hpp"
 
 namespace cinch {
 namespace {

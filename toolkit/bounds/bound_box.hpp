@@ -5,9 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "toolkit/bounds/directions.hpp"
-#include "toolkit/bounds/method.hpp"
-#include "toolkit/bounds/rest_bv.hpp"
+#include "cinch/bounds.hpp"
+#include "cinch/bvh.hpp"
 
 namespace cinch {
 

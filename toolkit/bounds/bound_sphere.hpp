@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "toolkit/bounds/directions.hpp"
+#include "cinch/bounds.hpp"
 #include "toolkit/bounds/weight_space.hpp"
 #include "toolkit/surface/skin.hpp"
 

@@ -2,7 +2,7 @@
 #include "toolkit/bounds/bound_vertex.hpp"
 
 #include "toolkit/bounds/rounding.hpp"
-#include "toolkit/deform/evaluate.hpp"
+#include "cinch/deform.hpp"
 
 namespace cinch {
 

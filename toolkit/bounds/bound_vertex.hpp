@@ -3,9 +3,9 @@
 
 #include <span>
 
-#include "toolkit/bounds/directions.hpp"
+#include "cinch/bounds.hpp"
 #include "toolkit/bounds/weight_space.hpp"
-#include "toolkit/deform/weights.hpp"
+#include "cinch/surface.hpp"
 
 namespace cinch {
 

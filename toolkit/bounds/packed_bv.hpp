@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "toolkit/bounds/method.hpp"
+#include "cinch/bounds.hpp"
 
 namespace cinch {
 

@@ -5,16 +5,9 @@
 #include <utility>
 #include <vector>
 
+#include "cinch/bvh.hpp"
+
 namespace cinch {
-
-/// W' = { w : Σ_j w_j = 1, l_j ≤ w_j ≤ h_j }, the limited convex weight space of one BV (Eq. 9). A view; owns nothing.
-struct WeightSpace {
-    std::span<const double> l, h; ///< multiples of 2^-53 in [0, 1], 0 ≤ l ≤ h
-};
-
-/// Whether results carry the error terms of rounding.hpp and so are proven bounds. `plain` is double arithmetic as it
-/// comes, which falls below the exact value about every fourth time; it exists to measure what the proof costs.
-enum class Rounding { proven, plain };
 
 /// D(λ) = λ + Σ_j [ l_j (b_j − λ) + (h_j − l_j) max(b_j − λ, 0) ] ≥ max { Σ w_j b_j : w ∈ W' } for *every* λ (weak duality).
 /// Proven: at least the exact D(λ) of the doubles given; +∞ if anything overflows. Never NaN.

@@ -6,14 +6,9 @@
 #include <optional>
 #include <span>
 
-#include "toolkit/surface/triangle_mesh.hpp"
+#include "cinch/bounds.hpp"
 
 namespace cinch {
-
-/// A closed axis-aligned box.
-struct Aabb {
-    Vec3 lower, upper;
-};
 
 using Cell = std::array<std::int32_t, 3>;
 

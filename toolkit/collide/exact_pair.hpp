@@ -4,7 +4,7 @@
 #include <span>
 
 #include "toolkit/collide/triangle_pair.hpp"
-#include "toolkit/deform/evaluate.hpp"
+#include "cinch/deform.hpp"
 #include "toolkit/hierarchy/lazy_refit.hpp"
 
 namespace cinch {

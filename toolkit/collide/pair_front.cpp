@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "toolkit/collide/pair_front.hpp"
+#include "toolkit/hierarchy/lazy_refit.hpp"
 
 #include <algorithm>
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "toolkit/collide/cell_grid.hpp"
-#include "toolkit/collide/pair_list.hpp"
+#include "cinch/collider.hpp"
 
 namespace cinch {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "toolkit/deform/evaluate.hpp"
+#include "cinch/deform.hpp"
 
 #include "toolkit/deform/parallel.hpp"
-#include "toolkit/surface/arithmetic.hpp"
+#include "cinch/environment.hpp"
 
 namespace cinch {
 

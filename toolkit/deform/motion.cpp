@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "toolkit/deform/motion.hpp"
 
-#include "toolkit/surface/arithmetic.hpp"
+#include "cinch/environment.hpp"
 
 #include <cmath>
 #include <memory>

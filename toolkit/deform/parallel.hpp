@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cfenv>
 #include <cstddef>
 #if defined(__SANITIZE_THREAD__)
 #include <atomic>
@@ -8,15 +10,32 @@
 
 #include <tbb/parallel_for.h>
 
+#include "toolkit/surface/current_executor.hpp"
+
 namespace cinch {
 
-/// body(first, last) on pieces of [0, count), in parallel, every piece in the *caller's* floating-point environment. TBB would
-/// otherwise run tasks, on the calling thread too, in the environment in which its arena was created long ago.
+/// body(first, last) on pieces of [0, count), in parallel, by the thread's executor (cinch/environment.hpp) or else oneTBB, every piece in the
+/// *caller's* floating-point environment. TBB would otherwise run tasks, on the calling thread too, in the environment in which its arena was created long ago.
 template <class Body> void parallel_blocks(std::size_t count, std::size_t grain, const Body& body)
 {
     if (count <= grain) {
         if (count > 0)
             body(std::size_t{0}, count);
+        return;
+    }
+    if (Executor* const executor = current_executor()) {
+        std::fenv_t callers;
+        std::fegetenv(&callers);
+        executor->run((count + grain - 1) / grain, [&](std::size_t piece) {
+            std::fenv_t own;
+            std::fegetenv(&own);
+            std::fesetenv(&callers);
+            { // what the piece does in parallel goes the same way
+                const UseExecutor same(*executor);
+                body(piece * grain, std::min(count, (piece + 1) * grain));
+            }
+            std::fesetenv(&own);
+        });
         return;
     }
     tbb::task_group_context context(tbb::task_group_context::isolated,

@@ -8,7 +8,7 @@
 
 #include "toolkit/deform/dyadic.hpp"
 #include "toolkit/deform/parallel.hpp"
-#include "toolkit/surface/arithmetic.hpp"
+#include "cinch/environment.hpp"
 
 namespace cinch {
 namespace {

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "toolkit/deform/surface_evaluator.hpp"
+#include "cinch/deform.hpp"
+#include "cinch/environment.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "toolkit/deform/evaluate.hpp"
+#include "toolkit/deform/aligned.hpp"
 #include "toolkit/deform/kernel/evaluate_group.hpp"
 #include "toolkit/deform/parallel.hpp"
-#include "toolkit/surface/arithmetic.hpp"
+#include "toolkit/surface/triangle_mesh.hpp"
 
 namespace cinch {
 namespace {
@@ -33,17 +34,36 @@ void split(const std::vector<Vec3>& rest, std::span<std::uint32_t> order)
     split(rest, order.subspan(half));
 }
 
-Vec3 image(const AffineMap& map, const Vec3& p)
-{
-    Vec3 x;
-    for (int r = 0; r < 3; ++r)
-        x[r] = map.m[r][0] * p[0] + map.m[r][1] * p[1] + map.m[r][2] * p[2] + map.m[r][3];
-    return x;
-}
-
 } // namespace
 
-template <class T> SurfaceEvaluator<T>::SurfaceEvaluator(const DeformableSurface& surface) : surface_(&surface)
+template <class T> struct SurfaceEvaluator<T>::Parts {
+    struct alignas(64) Group {
+        T rest[3][8];                       ///< about centre
+        std::uint32_t vertex[8];            ///< the last one repeated where there are fewer
+        std::uint32_t first = 0, count = 0; ///< in node; weights at 8 times that
+    };
+
+    explicit Parts(const DeformableSurface& surface);
+    void evaluate(std::span<const AffineMap> maps, std::span<Vec3> out) const;
+
+    const DeformableSurface* surface_;
+    Vec3 centre_ = Vec3::Zero(); ///< 0 in double
+    AlignedVector<Group> groups_;
+    std::vector<std::uint32_t> node_;
+    AlignedVector<T> weight_;
+};
+
+template <class T> SurfaceEvaluator<T>::SurfaceEvaluator(const DeformableSurface& surface) : parts_(std::make_unique<Parts>(surface)) {}
+template <class T> SurfaceEvaluator<T>::~SurfaceEvaluator() = default;
+template <class T> SurfaceEvaluator<T>::SurfaceEvaluator(SurfaceEvaluator&&) noexcept = default;
+template <class T> SurfaceEvaluator<T>& SurfaceEvaluator<T>::operator=(SurfaceEvaluator&&) noexcept = default;
+
+template <class T> void SurfaceEvaluator<T>::operator()(std::span<const AffineMap> maps, std::span<Vec3> out) const
+{
+    parts_->evaluate(maps, out);
+}
+
+template <class T> SurfaceEvaluator<T>::Parts::Parts(const DeformableSurface& surface) : surface_(&surface)
 {
     if constexpr (sizeof(T) == 4)
         centre_ = extent(surface.mesh).centre;
@@ -80,7 +100,7 @@ template <class T> SurfaceEvaluator<T>::SurfaceEvaluator(const DeformableSurface
     }
 }
 
-template <class T> void SurfaceEvaluator<T>::operator()(std::span<const AffineMap> maps, std::span<Vec3> out) const
+template <class T> void SurfaceEvaluator<T>::Parts::evaluate(std::span<const AffineMap> maps, std::span<Vec3> out) const
 {
     require_default_arithmetic();
     std::vector<std::uint8_t> finite(maps.size());
@@ -90,11 +110,11 @@ template <class T> void SurfaceEvaluator<T>::operator()(std::span<const AffineMa
         finite[j] = is_finite(maps[j]);
         count += finite[j];
         if (finite[j] && sizeof(T) == 4) // the mean image of the rest centre
-            origin += (image(maps[j], centre_) - origin) / static_cast<double>(count);
+            origin += (apply(maps[j], centre_) - origin) / static_cast<double>(count);
     }
     AlignedVector<T> packed(12 * maps.size(), 0);
     for (std::size_t j = 0; j < maps.size(); ++j) {
-        const Vec3 t = sizeof(T) == 4 && finite[j] ? Vec3(image(maps[j], centre_) - origin) : Vec3(maps[j].m[0][3], maps[j].m[1][3], maps[j].m[2][3]);
+        const Vec3 t = sizeof(T) == 4 && finite[j] ? Vec3(apply(maps[j], centre_) - origin) : Vec3(maps[j].m[0][3], maps[j].m[1][3], maps[j].m[2][3]);
         for (std::size_t r = 0; r < 3; ++r) {
             for (std::size_t c = 0; c < 3; ++c)
                 packed[12 * j + 4 * r + c] = static_cast<T>(maps[j].m[r][c]);

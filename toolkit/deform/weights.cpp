@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "toolkit/deform/weights.hpp"
+#include "cinch/surface.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "toolkit/deform/dyadic.hpp"
-#include "toolkit/surface/arithmetic.hpp"
+#include "cinch/environment.hpp"
 
 namespace cinch {
 

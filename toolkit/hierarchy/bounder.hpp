@@ -5,7 +5,7 @@
 #include <span>
 
 #include "toolkit/bounds/projected_maps.hpp"
-#include "toolkit/hierarchy/refit.hpp"
+#include "cinch/refit.hpp"
 
 namespace cinch {
 

@@ -5,9 +5,11 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "toolkit/hierarchy/cluster.hpp"
 #include "toolkit/hierarchy/rest_data.hpp"
 
-#include "toolkit/surface/arithmetic.hpp"
+#include "cinch/environment.hpp"
+#include "toolkit/surface/triangle_mesh.hpp"
 
 namespace cinch {
 namespace {

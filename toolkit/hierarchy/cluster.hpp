@@ -1,17 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
-#include <vector>
-
-#include "toolkit/surface/triangle_mesh.hpp"
+#include "cinch/bvh.hpp"
 
 namespace cinch {
-
-/// Most triangles, and most different vertices, of a cluster. At least 1 and 3.
-struct ClusterSize {
-    std::size_t triangles = 16, vertices = 16;
-};
 
 /// Groups of triangles that lie together. Cluster c owns triangle[first[c]] to triangle[first[c + 1] − 1].
 struct Clusters {

@@ -9,10 +9,10 @@
 
 #include <hwy/cache_control.h>
 
-#include "toolkit/bounds/directions.hpp"
+#include "cinch/bounds.hpp"
 #include "toolkit/bounds/rounding.hpp"
 #include "toolkit/deform/parallel.hpp"
-#include "toolkit/surface/arithmetic.hpp"
+#include "cinch/environment.hpp"
 #include "toolkit/surface/length.hpp"
 
 namespace cinch {

@@ -5,42 +5,12 @@
 #include <span>
 #include <vector>
 
+#include "cinch/collider.hpp"
 #include "toolkit/hierarchy/bounder.hpp"
 #include "toolkit/hierarchy/dop.hpp"
 #include "toolkit/hierarchy/leaf_set.hpp"
 
 namespace cinch {
-
-/// How the BVs of a frame come about.
-enum class Update : std::uint8_t {
-    lazy,      ///< the cut by the methods, above it by merging, below it on demand; leaves from their vertices
-    full,      ///< all leaves from their vertices, all other BVs by merging: O(ℓ)
-    automatic, ///< full for a body of which the last query touched more than half of the leaves, else lazy
-};
-
-struct LazyOptions {
-    Methods methods = Method::best;
-    int kdop = 6;
-    Precision precision = Precision::float32;
-    Update update = Update::automatic;
-    RestShape rest_shape = RestShape::aabb; ///< for convex, eq12 and limited
-    bool keep_cut = true;   ///< false: every BV by the methods when it is wanted, as for a front of pairs
-    std::size_t lanes = 16; ///< 4, 8 or 16: room for the triangles and vertices of every leaf
-};
-
-/// A body's motion in a frame.
-struct BodyFrame {
-    std::span<const AffineMap> maps;   ///< one per simulation node
-    std::span<const Vec3> positions{}; ///< of all vertices, where they are there anyway: then these are the vertices, and the update is full
-};
-
-/// What a frame took.
-struct LazyCounts {
-    std::size_t bounds = 0;   ///< BVs bounded by the methods
-    std::size_t leaves = 0;   ///< deformed
-    std::size_t vertices = 0; ///< of these leaves, those at their borders counted in each
-    std::size_t merged = 0;   ///< BVs bounded by their children
-};
 
 /// The BVs of one body in a frame, brought up to date as far as a query goes (§4.2 of the paper). Each tree keeps its *cut*: the BVs where
 /// the last query went no further. At the beginning of a frame these are bounded by the methods, all above them by their children. What

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "toolkit/deform/aligned.hpp"
-#include "toolkit/hierarchy/bvh.hpp"
+#include "cinch/bvh.hpp"
 #include "toolkit/hierarchy/kernel/leaf_kernel.hpp"
 
 namespace cinch {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "toolkit/bounds/kernel/bound_kernel.hpp"
-#include "toolkit/hierarchy/bvh.hpp"
+#include "cinch/bvh.hpp"
 
 namespace cinch {
 

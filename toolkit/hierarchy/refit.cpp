@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "toolkit/hierarchy/refit.hpp"
+#include "cinch/refit.hpp"
 
 #include <algorithm>
 #include <optional>
 #include <stdexcept>
 
 #include "toolkit/bounds/bound_vertex.hpp"
-#include "toolkit/bounds/directions.hpp"
+#include "cinch/bounds.hpp"
 #include "toolkit/bounds/rounding.hpp"
 #include "toolkit/deform/parallel.hpp"
 #include "toolkit/hierarchy/bounder.hpp"
-#include "toolkit/surface/arithmetic.hpp"
+#include "cinch/environment.hpp"
 
 namespace cinch {
 namespace {

@@ -2,7 +2,7 @@
 // Internal to hierarchy/: the steps of build_bvh after the tree stands. Each reads what the ones before it set.
 #pragma once
 
-#include "toolkit/hierarchy/bvh.hpp"
+#include "cinch/bvh.hpp"
 
 namespace cinch {
 

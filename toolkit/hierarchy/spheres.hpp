@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "toolkit/bounds/bound_sphere.hpp"
-#include "toolkit/hierarchy/bvh.hpp"
+#include "cinch/bvh.hpp"
 
 namespace cinch {
 

@@ -13,7 +13,7 @@
 #include "toolkit/simulate/explicit_step.hpp"
 #include "toolkit/simulate/implicit_step.hpp"
 #include "toolkit/simulate/stream.hpp"
-#include "toolkit/surface/arithmetic.hpp"
+#include "cinch/environment.hpp"
 
 namespace cinch {
 

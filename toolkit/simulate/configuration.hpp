@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "toolkit/deform/surface.hpp"
+#include "cinch/surface.hpp"
 #include "toolkit/simulate/kernel/neighbour_kernel.hpp"
 #include "toolkit/simulate/meshless_body.hpp"
 #include "toolkit/simulate/reference.hpp"

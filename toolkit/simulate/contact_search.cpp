@@ -5,7 +5,8 @@
 
 #include <Eigen/Geometry>
 
-#include "toolkit/deform/evaluate.hpp"
+#include "cinch/deform.hpp"
+#include "toolkit/surface/triangle_mesh.hpp"
 
 namespace cinch {
 void ContactSearch::add(BodySimulation& body, BodyContact& contact)

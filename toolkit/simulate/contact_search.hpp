@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "toolkit/collide/collider.hpp"
+#include "cinch/collider.hpp"
 #include "toolkit/simulate/body_simulation.hpp"
 #include "toolkit/simulate/effects/contact.hpp"
 #include "toolkit/simulate/find_inside.hpp"

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <numeric>
 
-#include "toolkit/surface/input_error.hpp"
+#include "cinch/surface.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 
 namespace cinch {

@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "toolkit/surface/input_error.hpp"
+#include "cinch/surface.hpp"
 #include "toolkit/surface/triangle_mesh.hpp"
 
 namespace cinch {

@@ -11,6 +11,7 @@
 #include "toolkit/deform/sample_nodes.hpp"
 #include "toolkit/surface/character.hpp"
 #include "toolkit/surface/shapes.hpp"
+#include "toolkit/surface/triangle_mesh.hpp"
 
 namespace cinch {
 namespace {

@@ -12,8 +12,9 @@
 
 #include "toolkit/deform/parallel.hpp"
 #include "toolkit/deform/sample_nodes.hpp"
-#include "toolkit/surface/arithmetic.hpp"
+#include "cinch/environment.hpp"
 #include "toolkit/surface/length.hpp"
+#include "toolkit/surface/triangle_mesh.hpp"
 
 namespace cinch {
 namespace {

@@ -12,8 +12,8 @@
 #include "toolkit/deform/parallel.hpp"
 #include "toolkit/simulate/load_body.hpp"
 #include "toolkit/simulate/stream.hpp"
-#include "toolkit/surface/arithmetic.hpp"
-#include "toolkit/surface/input_error.hpp"
+#include "cinch/environment.hpp"
+#include "cinch/surface.hpp"
 
 namespace cinch {
 namespace {

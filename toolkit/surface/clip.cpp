@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "toolkit/surface/clip.hpp"
+#include "cinch/deform.hpp"
 
 #include <memory>
 #include <stdexcept>
 
-#include "toolkit/surface/arithmetic.hpp"
+#include "cinch/environment.hpp"
 
 namespace cinch {
 

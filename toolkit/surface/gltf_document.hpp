@@ -9,7 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "toolkit/surface/input_error.hpp"
+#include "cinch/surface.hpp"
 
 namespace cinch {
 

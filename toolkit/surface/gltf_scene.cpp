@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 #include "toolkit/surface/gltf_accessor.hpp"
 
 namespace cinch {

@@ -5,7 +5,7 @@
 #include <map>
 #include <set>
 
-#include "toolkit/surface/arithmetic.hpp"
+#include "cinch/environment.hpp"
 #include "toolkit/surface/character.hpp"
 #include "toolkit/surface/gltf_accessor.hpp"
 #include "toolkit/surface/gltf_animation.hpp"

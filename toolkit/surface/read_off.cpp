@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "toolkit/surface/arithmetic.hpp"
+#include "cinch/environment.hpp"
 #include "toolkit/surface/left_out.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 #include "toolkit/surface/text_scan.hpp"

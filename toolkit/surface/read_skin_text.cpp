@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "toolkit/surface/arithmetic.hpp"
+#include "cinch/environment.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 #include "toolkit/surface/skin.hpp"
 #include "toolkit/surface/text_scan.hpp"

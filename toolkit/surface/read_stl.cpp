@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "toolkit/surface/arithmetic.hpp"
+#include "cinch/environment.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 #include "toolkit/surface/text_scan.hpp"
 

@@ -4,9 +4,11 @@
 #include <cmath>
 #include <memory>
 
-#include "toolkit/surface/arithmetic.hpp"
+#include <Eigen/Geometry>
+
+#include "cinch/environment.hpp"
 #include "toolkit/surface/character.hpp"
-#include "toolkit/surface/input_error.hpp"
+#include "cinch/surface.hpp"
 
 namespace cinch {
 namespace {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "toolkit/surface/shapes.hpp"
 
-#include "toolkit/surface/arithmetic.hpp"
+#include "cinch/environment.hpp"
+#include "toolkit/surface/triangle_mesh.hpp"
 
 #include <algorithm>
 #include <cmath>

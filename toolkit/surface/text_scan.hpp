@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "toolkit/surface/input_error.hpp"
+#include "cinch/surface.hpp"
 #include "toolkit/surface/triangle_mesh.hpp"
 
 namespace cinch {

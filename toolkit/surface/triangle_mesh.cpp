@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "toolkit/surface/triangle_mesh.hpp"
 
-#include "toolkit/surface/arithmetic.hpp"
+#include "cinch/environment.hpp"
 
 #include <algorithm>
 #include <map>

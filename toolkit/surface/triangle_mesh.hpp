@@ -1,23 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <vector>
-
-#include <Eigen/Core>
+#include "cinch/surface.hpp"
 
 namespace cinch {
-
-using Vec3 = Eigen::Vector3d;
-using Triangle = std::array<std::uint32_t, 3>;
-
-/// Vertices and triangles exactly as a file declares them: nothing is welded, dropped or reordered,
-/// so duplicate and degenerate triangles and unreferenced vertices are legal.
-struct TriangleMesh {
-    std::vector<Vec3> vertices;      ///< finite coordinates, in the file's unit
-    std::vector<Triangle> triangles; ///< indices into `vertices`
-};
 
 /// Centre of the axis-aligned box of the vertices and its longest half-extent; an empty mesh gives {0, 0}.
 struct Extent {

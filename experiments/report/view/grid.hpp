@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "toolkit/bounds/directions.hpp"
+#include "cinch/bounds.hpp"
 #include "toolkit/surface/triangle_mesh.hpp"
 
 namespace cinch {

@@ -13,11 +13,11 @@
 #include "experiments/report/view/grid.hpp"
 #include "experiments/report/view/pack.hpp"
 #include "experiments/simulation/find_scene.hpp"
-#include "toolkit/bounds/directions.hpp"
-#include "toolkit/collide/collider.hpp"
+#include "cinch/bounds.hpp"
+#include "cinch/collider.hpp"
 #include "toolkit/deform/parallel.hpp"
-#include "toolkit/deform/surface_evaluator.hpp"
-#include "toolkit/surface/input_error.hpp"
+#include "cinch/deform.hpp"
+#include "cinch/surface.hpp"
 
 namespace cinch {
 namespace {

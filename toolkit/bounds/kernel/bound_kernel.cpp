@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "toolkit/bounds/kernel/bound_kernel.hpp"
 
-#include "toolkit/bounds/directions.hpp"
+#include "cinch/bounds.hpp"
 #include "toolkit/bounds/kernel/bound_kdop.hpp"
 
 namespace cinch {

@@ -10,7 +10,7 @@
 
 #include <algorithm>
 
-#include "toolkit/bounds/directions.hpp"
+#include "cinch/bounds.hpp"
 #include "toolkit/bounds/kernel/rows-inl.hpp"
 #include "toolkit/bounds/kernel/search-inl.hpp"
 

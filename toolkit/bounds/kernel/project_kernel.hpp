@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "toolkit/bounds/directions.hpp"
+#include "cinch/bounds.hpp"
 #include "toolkit/bounds/projected_maps.hpp"
 
 namespace cinch {

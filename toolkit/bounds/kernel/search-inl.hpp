@@ -16,6 +16,7 @@
 #include "toolkit/bounds/kernel/choose_lambda.hpp"
 #include "toolkit/bounds/kernel/guard-inl.hpp"
 #include "toolkit/bounds/kernel/lanes-inl.hpp"
+#include "toolkit/bounds/weight_space.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace cinch::HWY_NAMESPACE {

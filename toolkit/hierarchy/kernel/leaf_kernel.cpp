@@ -6,7 +6,7 @@
 #include <cstring>
 #include <limits>
 
-#include "toolkit/bounds/directions.hpp"
+#include "cinch/bounds.hpp"
 #include "toolkit/bounds/projected_maps.hpp"
 #include "toolkit/bounds/rounding.hpp"
 #include "toolkit/deform/aligned.hpp"

@@ -1,14 +1,60 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+/// \file
+/// A tree of bounding volumes over a surface in rest state, and what each knows of its vertices.
+
 #include <cstdint>
+#include <span>
 #include <vector>
 
-#include "toolkit/bounds/rest_bv.hpp"
-#include "toolkit/deform/surface.hpp"
-#include "toolkit/hierarchy/cluster.hpp"
+#include "cinch/bounds.hpp"
 
 namespace cinch {
+
+/// W' = { w : Σ_j w_j = 1, l_j ≤ w_j ≤ h_j }, the limited convex weight space of one BV (Eq. 9). A view; owns nothing.
+struct WeightSpace {
+    std::span<const double> l, h; ///< multiples of 2^-53 in [0, 1], 0 ≤ l ≤ h
+};
+
+/// The real box centre ± half contains its vertices.
+struct RestBox {
+    Vec3 centre = Vec3::Zero(), half = Vec3::Zero();
+};
+
+/// The real parallelepiped centre + Σ β_i axis_i, |β_i| ≤ 1, contains its vertices. Its axes are nearly orthogonal: an OBB.
+struct OrientedBox {
+    Vec3 centre = Vec3::Zero();
+    Vec3 axis[3] = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+};
+
+/// w_j ≈ mean + gradient·y over a BV's vertices, y = x − pivot. Exactly, for every vertex: |w_j − mean − gradient·y| ≤ residual
+/// and |(w_j − mean) y_i| ≤ moment_i. The means of a BV are multiples of 2^-53 that sum to exactly 1.
+struct WeightModel {
+    double mean = 0;
+    Vec3 gradient = Vec3::Zero();
+    double residual = 0;
+    Vec3 moment = Vec3::Zero();
+};
+
+/// What one BV knows of its vertices in rest state. A view; owns nothing.
+struct RestBv {
+    RestBox box;
+    std::span<const std::uint32_t> node;   ///< simulation nodes that influence it
+    WeightSpace space;                     ///< parallel to `node`
+    std::span<const RestBox> local;        ///< parallel to `node`: holds the vertices that the simulation node influences,
+    std::span<const double> radius;        ///< and so does the ball of this radius about the box's centre
+    Vec3 pivot = Vec3::Zero();             ///< origin of y in the weight model and of the points
+    std::span<const WeightModel> model;    ///< parallel to `node`
+    std::span<const std::uint32_t> point;  ///< extreme vertices: max q·x over all vertices is at most that over these + slack·‖q‖
+    double slack = 0;
+    std::uint32_t vertex_influences = 0;   ///< most simulation nodes of any one of its vertices
+};
+
+/// Most triangles, and most different vertices, of a cluster. At least 1 and 3.
+struct ClusterSize {
+    std::size_t triangles = 16, vertices = 16;
+};
 
 /// One bounding volume in rest state: rest box, and where its triangles, children and influences lie in the Bvh.
 struct Bv {

@@ -1,20 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+/// \file
+/// Bounds of every BV of a deforming surface, frame after frame.
+
 #include <memory>
 #include <span>
 
-#include "toolkit/bounds/method.hpp"
-#include "toolkit/hierarchy/bvh.hpp"
+#include "cinch/bvh.hpp"
 
 namespace cinch {
-
-/// The arithmetic of the kernels. Both give proven bounds; float's are looser by a few 1e-6 of the surface's extent. Where a BV has
-/// more simulation nodes than float takes (most_nodes_in_float), double is used throughout.
-enum class Precision { float32, float64 };
-
-/// "float" or "double".
-constexpr std::string_view name_of(Precision precision) { return precision == Precision::float32 ? "float" : "double"; }
 
 struct RefitOptions {
     Methods methods = Method::best; ///< several are intersected

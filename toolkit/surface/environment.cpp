@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "toolkit/surface/arithmetic.hpp"
+#include "cinch/environment.hpp"
 
 #include <stdexcept>
+
+#include "toolkit/surface/current_executor.hpp"
 
 namespace cinch {
 
@@ -16,6 +18,23 @@ void require_default_arithmetic()
         throw std::runtime_error("the rounding mode is not to-nearest; restore it before computing bounds");
     if (!keeps_subnormals)
         throw std::runtime_error("subnormal numbers are flushed to zero; clear FTZ and DAZ before computing bounds");
+}
+
+DefaultArithmetic::DefaultArithmetic()
+{
+    std::fegetenv(&before_);
+    std::fesetenv(FE_DFL_ENV);
+}
+
+DefaultArithmetic::~DefaultArithmetic() { std::fesetenv(&before_); }
+
+UseExecutor::UseExecutor(Executor& executor) : before_(current_executor()) { current_executor() = &executor; }
+UseExecutor::~UseExecutor() { current_executor() = before_; }
+
+Executor*& current_executor()
+{
+    thread_local Executor* executor = nullptr;
+    return executor;
 }
 
 } // namespace cinch

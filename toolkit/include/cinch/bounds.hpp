@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+/// \file
+/// The choices of a bound: methods, k-DOPs, arithmetic; and boxes and k-DOPs as values.
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -8,9 +11,14 @@
 #include <cstdint>
 #include <iterator>
 #include <optional>
+#include <span>
+#include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
+
+#include "cinch/surface.hpp"
 
 namespace cinch {
 
@@ -185,5 +193,113 @@ inline std::optional<Methods> named_methods(std::string_view text)
         text.remove_prefix(plus + 1);
     }
 }
+
+/// An axis of a k-DOP: components in {−1, 0, 1}, so that a projection needs no multiplication. Not normalised.
+using Axis = std::array<int, 3>;
+
+/// All 13 axes of the 26-DOP: 3 faces, 4 corners, 6 edges.
+inline constexpr std::array<Axis, 13> all_axes = {{{1, 0, 0},
+                                                   {0, 1, 0},
+                                                   {0, 0, 1},
+                                                   {1, 1, 1},
+                                                   {1, 1, -1},
+                                                   {1, -1, 1},
+                                                   {1, -1, -1},
+                                                   {1, 1, 0},
+                                                   {1, 0, 1},
+                                                   {0, 1, 1},
+                                                   {1, -1, 0},
+                                                   {1, 0, -1},
+                                                   {0, 1, -1}}};
+inline constexpr std::array<Axis, 9> axes_18 = {
+    {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {1, 0, 1}, {0, 1, 1}, {1, -1, 0}, {1, 0, -1}, {0, 1, -1}}};
+
+/// The k-DOPs there are, by their numbers of directions. (CMakeLists.txt reads this line.)
+inline constexpr std::array kdops = {6, 14, 18, 26};
+inline constexpr std::size_t most_directions = *std::max_element(kdops.begin(), kdops.end());
+inline constexpr bool is_kdop(int k) { return std::find(kdops.begin(), kdops.end(), k) != kdops.end(); }
+
+/// "6, 14, 18 or 26".
+inline std::string kdop_names()
+{
+    std::string names;
+    for (std::size_t i = 0; i < kdops.size(); ++i)
+        names += (i == 0 ? "" : i + 1 < kdops.size() ? ", " : " or ") + std::to_string(kdops[i]);
+    return names;
+}
+
+/// The k/2 axes of a k-DOP; the faces (AABB) come first. A bound has k supports: place 2a is max axis·v, place 2a + 1 is max −axis·v.
+inline std::span<const Axis> axes_of(int k)
+{
+    if (k == 18)
+        return axes_18;
+    return std::span(all_axes).first(static_cast<std::size_t>(k / 2));
+}
+
+/// Calls f.operator()<number of axes>() for a k-DOP. Throws std::invalid_argument for a k that is none.
+template <class F> void with_axes(int k, F&& f)
+{
+    const bool found = [&]<std::size_t... i>(std::index_sequence<i...>) {
+        return ((k == kdops[i] ? (f.template operator()<static_cast<std::size_t>(kdops[i] / 2)>(), true) : false) || ...);
+    }(std::make_index_sequence<kdops.size()>());
+    if (!found)
+        throw std::invalid_argument("k must be " + kdop_names());
+}
+
+/// Whether results carry the error terms of rounding.hpp and so are proven bounds. `plain` is double arithmetic as it
+/// comes, which falls below the exact value about every fourth time; it exists to measure what the proof costs.
+enum class Rounding { proven, plain };
+
+/// The arithmetic of the kernels. Both give proven bounds; float's are looser by a few 1e-6 of the surface's extent. Where a BV has
+/// more simulation nodes than float takes (most_nodes_in_float), double is used throughout.
+enum class Precision { float32, float64 };
+
+/// "float" or "double".
+constexpr std::string_view name_of(Precision precision) { return precision == Precision::float32 ? "float" : "double"; }
+
+/// Which rest box of a BV the methods without local boxes use.
+enum class RestShape : std::uint8_t { aabb, obb };
+
+/// A closed axis-aligned box; none if lower > upper on any axis.
+struct Aabb {
+    Vec3 lower, upper;
+    bool contains(const Vec3& p) const { return (p.array() >= lower.array()).all() && (p.array() <= upper.array()).all(); }
+    bool operator==(const Aabb&) const = default;
+};
+
+/// A k-DOP: for every axis a of axes_of(k) the slab against(a) ≤ a·x ≤ along(a). Stored as supports are everywhere: place 2a is the
+/// greatest a·x, place 2a + 1 the greatest −a·x.
+class Dop {
+public:
+    /// From the supports of one BV, k of them. Throws std::invalid_argument for a k that is none.
+    explicit Dop(std::span<const double> supports)
+    {
+        if (!is_kdop(static_cast<int>(supports.size())))
+            throw std::invalid_argument("a k-DOP has " + kdop_names() + " supports");
+        std::copy(supports.begin(), supports.end(), support_.begin());
+        k_ = static_cast<int>(supports.size());
+    }
+    int k() const { return k_; }
+    std::span<const Axis> axes() const { return axes_of(k_); }
+    double along(std::size_t axis) const { return support_[2 * axis]; }
+    double against(std::size_t axis) const { return -support_[2 * axis + 1]; }
+    /// The first three axes are those of coordinates.
+    Aabb aabb() const { return {{against(0), against(1), against(2)}, {along(0), along(1), along(2)}}; }
+    /// In doubles as they come: a·x is rounded where the axis is no coordinate axis.
+    bool contains(const Vec3& p) const
+    {
+        for (std::size_t a = 0; a < axes().size(); ++a) {
+            const Axis& axis = axes()[a];
+            const double along_axis = axis[0] * p[0] + axis[1] * p[1] + axis[2] * p[2];
+            if (!(along_axis <= along(a) && along_axis >= against(a)))
+                return false;
+        }
+        return true;
+    }
+
+private:
+    std::array<double, most_directions> support_{};
+    int k_ = 0;
+};
 
 } // namespace cinch
