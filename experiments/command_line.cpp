@@ -10,6 +10,7 @@
 #include "experiments/collide/backend.hpp"
 #include "experiments/report/table.hpp"
 #include "cinch/bounds.hpp"
+#include "toolkit/surface/read_mesh.hpp"
 #include "toolkit/deform/motion.hpp"
 #include "toolkit/surface/shapes.hpp"
 
@@ -60,8 +61,8 @@ void add_arithmetic(CLI::App& command, Precision& precision, int& passes)
 void add_input(CLI::App& command, InputOptions& o)
 {
     command.add_option("INPUT", o.input,
-                       wrapped(fmt::format("a shape ({}), a scene ({}, or a .json file), a mesh (.obj, .off, .ply, .stl) or a skinned character (.glb, .gltf)",
-                                           fmt::join(shape_names(), ", "), fmt::join(shipped_scenes(), ", "))))
+                       wrapped(fmt::format("a shape ({}), a scene ({}, or a .json file), a mesh ({}) or a skinned character (.glb, .gltf)",
+                                           fmt::join(shape_names(), ", "), fmt::join(shipped_scenes(), ", "), mesh_extensions())))
         ->option_text("[brain]");
     auto option = [&](const char* name, auto& value, const std::string& description) { return command.add_option(name, value, wrapped(description)); };
     option("--nodes", o.nodes, "simulation nodes sampled in the volume [the paper's number for a shape, 100 for a mesh]")

@@ -290,7 +290,7 @@ Input load_input(const InputOptions& options)
             load_skin_text(input, options);
     } else {
         throw InputError::in_file(options.input, std::filesystem::exists(options.input)
-                                                     ? "unknown format; known are .obj, .off, .ply, .stl, .glb and .gltf"
+                                                     ? "unknown format; known are " + mesh_extensions(", .glb, .gltf")
                                                      : fmt::format("no such file, and no shape ({}) or scene ({}) of that name", fmt::join(shape_names(), ", "),
                                                                    fmt::join(shipped_scenes(), ", ")));
     }

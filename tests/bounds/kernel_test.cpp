@@ -5,6 +5,7 @@
 #include "toolkit/bounds/bound_box.hpp"
 #include "cinch/bounds.hpp"
 #include "toolkit/bounds/kernel/bound_kernel.hpp"
+#include "toolkit/bounds/readable.hpp"
 #include "toolkit/deform/kernel/targets.hpp"
 #include "toolkit/hierarchy/packed_bvh.hpp"
 
@@ -88,6 +89,52 @@ TEST_CASE("kernels agree with the readable form")
                     }
                 }
         }
+}
+
+// The kernels round what they read outward, and add their errors: never below the formula by more than its own rounding, and above it by
+// some units of the last place of a vertex's distance. One that gave away 1 % of the width would be far off.
+TEST_CASE("kernels agree with the formulas of the kinds that best chooses among, and best is the least of them")
+{
+    const Scene scene;
+    const std::vector<Vec3>& x = scene.e.surface.mesh.vertices;
+    for (const int kdop : {6, 26}) {
+        const auto k = static_cast<std::size_t>(kdop);
+        std::vector<double> simple(k), also(k);
+        const auto formula = [&](Method kind, std::size_t bv, const std::vector<AffineMap>& frame, double start, std::vector<double>& out) {
+            const RestBv rest = scene.bvh.rest(bv);
+            if (kind == Method::local)
+                readable_local(rest, frame, start, axes_of(kdop), out);
+            else if (kind == Method::support)
+                readable_support(rest, x, frame, start, axes_of(kdop), out);
+            else
+                readable_linear(rest, x, frame, axes_of(kdop), out);
+        };
+        for (const Method method : chosen_methods | Method::best) {
+            const auto kinds_of = choose_kinds(scene.bvh, scene.e.surface, method);
+            const auto fast = scene.bounds<double>(method, kdop, Rounding::proven, 1), single = scene.bounds<float>(method, kdop, Rounding::proven, 1);
+            std::size_t place = 0, equal = 0;
+            for (const auto& frame : scene.e.frames)
+                for (std::size_t bv = 0; bv < scene.bvh.bvs.size(); ++bv) {
+                    const ChosenKind& kind = kinds_of[bv];
+                    formula(kind.kind, bv, frame, kind.start, simple);
+                    if (kind.also) {
+                        formula(*kind.also, bv, frame, kind.also_start, also);
+                        for (std::size_t d = 0; d < k; ++d)
+                            simple[d] = std::min(simple[d], also[d]);
+                    }
+                    for (std::size_t d = 0; d < k; ++d, ++place) {
+                        INFO(name_of(method) << ", BV " << bv << ", direction " << d << " of " << k);
+                        REQUIRE(fast[place] <= simple[d] + 1e-12);
+                        REQUIRE(single[place] <= simple[d] + 2e-4);
+                        // A guard may bring best further down.
+                        REQUIRE((kind.guarded || fast[place] >= simple[d] - 1e-13));
+                        REQUIRE((kind.guarded || single[place] >= simple[d] - 1e-4)); // λ in float is another one
+                        equal += fast[place] >= simple[d] - 1e-13;
+                    }
+                }
+            CHECK(equal > place * 9 / 10);
+        }
+    }
 }
 
 TEST_CASE("the linear kind reproduces an affine motion of weights that are affine, up to the points' slack")

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "toolkit/surface/read_mesh.hpp"
 
+#include <algorithm>
 #include <cctype>
 #include <fstream>
 #include <limits>
@@ -46,32 +47,34 @@ static const char* compression_of(std::string_view bytes)
     return nullptr;
 }
 
-using Parser = MeshFile (*)(std::string_view, const std::string&);
-
-static Parser parser_for(const std::filesystem::path& path)
+static const MeshFormat* format_of(const std::filesystem::path& path)
 {
     const std::string extension = lower_extension(path);
-    return extension == ".obj"   ? parse_obj
-           : extension == ".off" ? parse_off
-           : extension == ".ply" ? parse_ply
-           : extension == ".stl" ? parse_stl
-                                 : nullptr;
+    const auto* const found = std::find_if(std::begin(mesh_formats), std::end(mesh_formats), [&](const MeshFormat& format) { return format.extension == extension; });
+    return found == std::end(mesh_formats) ? nullptr : found;
 }
 
-bool is_mesh_file(const std::filesystem::path& path) { return parser_for(path) != nullptr; }
+std::string mesh_extensions(std::string_view others)
+{
+    std::string all;
+    for (const MeshFormat& format : mesh_formats)
+        all += (all.empty() ? "" : ", ") + std::string(format.extension);
+    return all + std::string(others);
+}
+
+bool is_mesh_file(const std::filesystem::path& path) { return format_of(path) != nullptr; }
 
 MeshFile read_mesh(const std::filesystem::path& path)
 {
-    const Parser parse = parser_for(path);
-    if (!parse)
-        throw InputError::in_file(path.string(), "unknown mesh format '" + path.extension().string() +
-                                                     "'; known are .obj, .off, .ply and .stl");
+    const MeshFormat* const format = format_of(path);
+    if (!format)
+        throw InputError::in_file(path.string(), "unknown mesh format '" + path.extension().string() + "'; known are " + mesh_extensions());
     const std::string bytes = read_bytes(path);
     if (bytes.size() > std::numeric_limits<std::uint32_t>::max())
         throw InputError::in_file(path.string(), "is larger than 4 GiB; vertex indices have 32 bits");
     if (const char* compression = compression_of(bytes))
         throw InputError::in_file(path.string(), std::string("is compressed (") + compression + "); unpack it first");
-    return parse(bytes, path.string());
+    return format->parse(bytes, path.string());
 }
 
 } // namespace cinch
