@@ -17,6 +17,7 @@
 #include "cinch/collider.hpp"
 #include "toolkit/deform/parallel.hpp"
 #include "cinch/deform.hpp"
+#include "toolkit/hierarchy/bounder.hpp"
 #include "cinch/surface.hpp"
 
 namespace cinch {
