@@ -33,6 +33,18 @@ template <class T> inline T succ(T x) noexcept
     return x + (phi * std::abs(x) + smallest_subnormal_of<T>);
 }
 
+/// The least T that is at least x, and the greatest that is at most x, for doubles x; ±∞ past the greatest number.
+template <class T> inline T round_up(double x) noexcept
+{
+    const T t = static_cast<T>(x);
+    return static_cast<double>(t) >= x ? t : std::nextafter(t, std::numeric_limits<T>::infinity());
+}
+template <class T> inline T round_down(double x) noexcept
+{
+    const T t = static_cast<T>(x);
+    return static_cast<double>(t) <= x ? t : std::nextafter(t, -std::numeric_limits<T>::infinity());
+}
+
 /// max over the nodes of a bound on |b̂_j − b_j|: the extremum of a box c ± e along an axis is computed as
 ///   g = Aᵀγ,  p = ((g₁c₁ + g₂c₂) + g₃c₃) + γ·t,  R = (|g₁|e₁ + |g₂|e₂) + |g₃|e₃,  b̂ = ±p + R.
 /// A leaf A_rs c_s passes 2 (g) + 1 (×) + 2 (sum of three) + 1 (+ τ) + 1 (+ R) = 7 roundings, A_rs e_s 6, t_r 4, so

@@ -12,11 +12,6 @@
 namespace cinch {
 namespace {
 
-float at_least(double x) // for x ≥ 0
-{
-    const float f = static_cast<float>(x);
-    return static_cast<double>(f) >= x ? f : succ(f);
-}
 
 void pack_leaf(const DeformableSurface& surface, const Bvh& bvh, const Bv& bv, const std::vector<std::uint32_t>& vertices, const Vec3& origin, LeafSet& out)
 {
@@ -41,7 +36,7 @@ void pack_leaf(const DeformableSurface& surface, const Bvh& bvh, const Bv& bv, c
     std::swap(place[0], place[static_cast<std::size_t>(std::max_element(h.begin(), h.end()) - h.begin())]);
     for (std::size_t j = 0; j < nodes.size(); ++j) {
         std::uint32_t* const words = influence + 4 * place[j];
-        const float most = at_least(h[j]), differing = at_least(h[j] - l[j]); // dyadic: exact
+        const float most = round_up<float>(h[j]), differing = round_up<float>(h[j] - l[j]); // dyadic: exact
         words[0] = nodes[j];
         std::memcpy(words + 1, &most, sizeof most);
         std::memcpy(words + 2, &differing, sizeof differing);
@@ -60,7 +55,7 @@ void pack_leaf(const DeformableSurface& surface, const Bvh& bvh, const Bv& bv, c
             const double x = surface.mesh.vertices[k][s] - origin[s], y = x - pivot[s];
             value[r * L + lane] = static_cast<float>(y);
             const double lost = (origin[s] == 0 ? 0 : std::abs(x) * 0x1p-28) + std::abs(y);
-            leaf.reach[r] = std::max(leaf.reach[r], succ(at_least(lost)));
+            leaf.reach[r] = std::max(leaf.reach[r], succ(round_up<float>(lost)));
         }
         const Weights::Row row = surface.weights.of(k);
         for (std::size_t i = 0; i < row.node.size(); ++i) {

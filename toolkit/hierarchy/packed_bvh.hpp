@@ -5,19 +5,20 @@
 #include <vector>
 
 #include "toolkit/bounds/kernel/bound_kernel.hpp"
+#include "toolkit/bounds/pack_bv.hpp"
 #include "cinch/bvh.hpp"
 
 namespace cinch {
 
 /// What the kernels need of a Bvh, in T, each BV with one kind of bound. Stands alone: the Bvh may go.
-template <class T> struct PackedBvh {
-    std::vector<PackedBv<T>> bvs; ///< as Bvh::bvs, then those that PackedBv::also and guard name
+template <class T> struct PackedBvh : PackedBvs<T> { ///< bvs: as Bvh::bvs, then those that PackedBv::also and guard name
     std::vector<std::uint32_t> place; ///< without leaves: where in bvs each BV stands; else empty
-    std::vector<std::uint32_t> node;
-    AlignedVector<T> value;
     RestExtent rest;
 
-    std::size_t bytes() const { return bvs.size() * sizeof(bvs[0]) + (place.size() + node.size()) * sizeof(node[0]) + value.size() * sizeof(value[0]); }
+    std::size_t bytes() const
+    {
+        return this->bvs.size() * sizeof(PackedBv<T>) + (place.size() + this->node.size()) * sizeof(std::uint32_t) + this->value.size() * sizeof(T);
+    }
 };
 
 /// One kind of bound for a BV or two, and where their λ begin (PackedBv::start).

@@ -55,7 +55,7 @@ template <class T> struct Lanes {
     }
 };
 
-template <class D, class V, class F> HWY_INLINE hn::TFromD<D> fold_vector(D, V v, F&& f)
+template <class D, class V, class F> HWY_INLINE hn::TFromD<D> fold_vector(D, V v, [[maybe_unused]] F&& f)
 {
 #if HWY_TARGET != HWY_SCALAR
     if constexpr (hn::MaxLanes(D()) > 1) {
