@@ -71,7 +71,7 @@ const DeformableSurface* SceneSimulation::surface(std::size_t body) const
 }
 void SceneSimulation::add(std::size_t body, std::unique_ptr<const OwnForce> force)
 {
-    parts_->simulation.bodies().at(body).simulation.add(std::make_unique<const Own>(std::move(force)));
+    parts_->simulation.bodies().at(body).simulation.add(std::make_unique<Own>(std::move(force)));
 }
 std::size_t SceneSimulation::frame() const { return parts_->simulation.frame(); }
 std::size_t SceneSimulation::frame_count() const { return parts_->simulation.frame_count(); }
