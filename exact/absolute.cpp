@@ -5,8 +5,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "exact/number.hpp"
 #include "cinch/bounds.hpp"
+#include "exact/number.hpp"
 
 namespace cinch::exact {
 
@@ -21,7 +21,9 @@ void absolute_supports(int kdop, std::span<const float> relative, const Vec3& or
         for (int r = 0; r < 3; ++r)
             sum += Interval((d % 2 ? -1 : 1) * axes[d / 2][static_cast<std::size_t>(r)] * origin[r]);
         constexpr double infinite = std::numeric_limits<double>::infinity();
-        supports[d] = relative[d] == std::numeric_limits<float>::infinity() ? infinite : std::isnan(sum.inf()) ? -infinite : sum.inf();
+        supports[d] = relative[d] == std::numeric_limits<float>::infinity() ? infinite
+                      : std::isnan(sum.inf())                               ? -infinite
+                                                                            : sum.inf();
     }
 }
 

@@ -22,10 +22,12 @@ std::optional<Answer> answer(WeightSpace space, std::span<const double> b, doubl
         out.corner.push_back(as_fraction(w.get_mpz_t(), -best->corner_bits));
     if (exact.size() > 1) {
         std::vector<Exact> sorted = exact;
-        std::nth_element(sorted.begin(), sorted.begin() + 1, sorted.end(), [](const Exact& x, const Exact& y) { return y < x; });
+        std::nth_element(sorted.begin(), sorted.begin() + 1, sorted.end(),
+                         [](const Exact& x, const Exact& y) { return y < x; });
         out.eq12 = as_fraction(dual_value(space, exact, sorted[1]));
     }
-    out.bound_holds = bound == std::numeric_limits<double>::infinity() || (std::isfinite(bound) && best->value <= Exact(bound));
+    out.bound_holds =
+        bound == std::numeric_limits<double>::infinity() || (std::isfinite(bound) && best->value <= Exact(bound));
     return out;
 }
 

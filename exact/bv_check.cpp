@@ -15,18 +15,23 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 bool at_most(const Exact& value, double bound) { return value <= Exact(bound); } // a finite bound
 
-std::string gap(const Exact& value, double bound) { return "exceeds the bound by " + as_fraction(value - Exact(bound)); }
+std::string gap(const Exact& value, double bound)
+{
+    return "exceeds the bound by " + as_fraction(value - Exact(bound));
+}
 
 } // namespace
 
-void BvCheck::check(std::size_t bv, std::span<const std::uint32_t> vertices, std::span<const double> supports, FrameVerdict& out, BlockResult& block)
+void BvCheck::check(std::size_t bv, std::span<const std::uint32_t> vertices, std::span<const double> supports,
+                    FrameVerdict& out, BlockResult& block)
 {
     out_ = &out;
     block_ = &block;
     bv_ = bv;
     rest_ = frame_.bvh.rest(bv);
     vertices_ = vertices;
-    box_is_finite_ = std::isfinite(rest_.box.half[0]) && std::isfinite(rest_.box.half[1]) && std::isfinite(rest_.box.half[2]);
+    box_is_finite_ =
+        std::isfinite(rest_.box.half[0]) && std::isfinite(rest_.box.half[1]) && std::isfinite(rest_.box.half[2]);
     for (std::size_t j = 0; j < rest_.node.size(); ++j)
         if (rest_.node[j] < place_.size()) // else rest_data is set
             place_[rest_.node[j]] = j;
@@ -155,7 +160,9 @@ void BvCheck::check_exact_vertices(const Interval& support)
         if (along(frame_.exact_vertices[k], axis(), against_).sup() <= bound_)
             continue;
         exact_used_ = true;
-        const Exact value = along(deformed<Exact>(frame_.surface.mesh.vertices[k], frame_.surface.weights.of(k), frame_.maps), axis(), against_);
+        const Exact value =
+            along(deformed<Exact>(frame_.surface.mesh.vertices[k], frame_.surface.weights.of(k), frame_.maps), axis(),
+                  against_);
         if (!at_most(value, bound_))
             return fail(exact_vertices, "exact vertex " + std::to_string(k) + " " + gap(value, bound_));
     }
@@ -167,7 +174,7 @@ void BvCheck::check_computed_vertices()
         Vec3 v = frame_.computed_vertices[k];
         for (int r = 0; r < 3; ++r) {
             if (axis()[static_cast<std::size_t>(r)] == 0)
-                v[r] = 0; // of no concern here, whatever it is
+                v[r] = 0;                  // of no concern here, whatever it is
             else if (!std::isfinite(v[r])) // only an infinite bound would do
                 return fail(computed_vertices, "computed vertex " + std::to_string(k) + " is not finite");
         }
@@ -221,7 +228,8 @@ double BvCheck::greedy_lambda()
     return key(order_.back());
 }
 
-// The exact value that the method's formula has, rounding aside; the bound itself for methods without one over these extrema.
+// The exact value that the method's formula has, rounding aside; the bound itself for methods without one over these
+// extrema.
 Interval BvCheck::method_value() const
 {
     const auto& b = extrema();
@@ -232,7 +240,8 @@ Interval BvCheck::method_value() const
     if (frame_.methods == Method::corners)
         return best_corner(rest_.space, b);
     if (!frame_.methods.contains(Method::eq12))
-        return std::accumulate(b.begin(), b.end(), b[0], [](const Interval& x, const Interval& y) { return maximum(x, y); });
+        return std::accumulate(b.begin(), b.end(), b[0],
+                               [](const Interval& x, const Interval& y) { return maximum(x, y); });
     if (b.size() == 1)
         return b[0];
     Interval first = maximum(b[0], b[1]), second = minimum(b[0], b[1]);

@@ -32,13 +32,14 @@ struct BlockResult {
 class BvCheck {
 public:
     explicit BvCheck(const Frame& frame)
-        : frame_(frame), boxes_(frame.methods.within(box_methods) && frame.shape == RestShape::aabb), weight_space_(frame.methods.within(weight_space_methods)),
-          place_(frame.surface.weights.node_count)
+        : frame_(frame), boxes_(frame.methods.within(box_methods) && frame.shape == RestShape::aabb),
+          weight_space_(frame.methods.within(weight_space_methods)), place_(frame.surface.weights.node_count)
     {
     }
 
     /// Writes the BV's own places of `out`, where rest_data is set already if it applies.
-    void check(std::size_t bv, std::span<const std::uint32_t> vertices, std::span<const double> supports, FrameVerdict& out, BlockResult& block);
+    void check(std::size_t bv, std::span<const std::uint32_t> vertices, std::span<const double> supports,
+               FrameVerdict& out, BlockResult& block);
 
 private:
     const Axis& axis() const { return frame_.axes[axis_]; }
@@ -59,8 +60,8 @@ private:
     void attribute(const Interval& support, Loss& loss) const;
 
     const Frame& frame_;
-    const bool boxes_;        // extrema are those of the deformed rest box, else of each node's own vertices
-    const bool weight_space_; // the methods make that statement
+    const bool boxes_;               // extrema are those of the deformed rest box, else of each node's own vertices
+    const bool weight_space_;        // the methods make that statement
     std::vector<std::size_t> place_; // of a simulation node in rest_.node; valid for nodes of the BV
     FrameVerdict* out_ = nullptr;
     BlockResult* block_ = nullptr;

@@ -134,8 +134,16 @@ struct CertificateWriter::Parts {
 
 CertificateWriter::CertificateWriter(const DeformableSurface& surface, const Bvh& bvh, const Claim& claim,
                                      LineSink sink)
-    : parts_(new Parts{Line(std::move(sink)), bvh.bvs.size(), static_cast<std::size_t>(claim.kdop), claim.frames, 0,
-                       claim.methods.within(box_methods) && claim.shape == RestShape::aabb, 0, 0, 0, {}})
+    : parts_(new Parts{Line(std::move(sink)),
+                       bvh.bvs.size(),
+                       static_cast<std::size_t>(claim.kdop),
+                       claim.frames,
+                       0,
+                       claim.methods.within(box_methods) && claim.shape == RestShape::aabb,
+                       0,
+                       0,
+                       0,
+                       {}})
 {
     Line& line = parts_->line;
     const std::string_view shape = claim.shape == RestShape::aabb ? "aabb" : "obb";

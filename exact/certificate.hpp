@@ -25,9 +25,9 @@ struct Claim {
     std::vector<std::string> missing; ///< parts of the input that the surface lacks; any make the certificate partial
 };
 
-/// Writes a certificate: JSON Lines that carry everything needed to prove the bounds again without this program. Doubles
-/// are texts of hexadecimal floats; hashes are SHA-256 over little-endian numbers, of 4 bytes (indices, counts) and 8
-/// (doubles). In this order:
+/// Writes a certificate: JSON Lines that carry everything needed to prove the bounds again without this program.
+/// Doubles are texts of hexadecimal floats; hashes are SHA-256 over little-endian numbers, of 4 bytes (indices, counts)
+/// and 8 (doubles). In this order:
 ///
 ///   {"certificate":"cinch 2", "method", "rest_shape", "kdop", "vertices", "triangles", "nodes", "bvs", "frames",
 ///    "clip", "partial", "missing", "sha256": {"positions", "triangles", "weights", "method"}}
@@ -41,15 +41,17 @@ struct Claim {
 ///
 /// The hash of weights is over each vertex's count, simulation nodes and weights, that of transforms over each frame's
 /// time and maps, that of the method over format, method, rest shape, k, clip and missing, each as its length, a colon
-/// and its bytes. "lambda" is there for the box_methods over axis-aligned rest boxes: D(λ) ≤ bound; where no double λ does
-/// it, λ is "p/q". Rest boxes and weight intervals are not in it: whoever checks it derives them from the vertices.
+/// and its bytes. "lambda" is there for the box_methods over axis-aligned rest boxes: D(λ) ≤ bound; where no double λ
+/// does it, λ is "p/q". Rest boxes and weight intervals are not in it: whoever checks it derives them from the
+/// vertices.
 class CertificateWriter {
 public:
     /// Writes all that does not change from frame to frame.
     CertificateWriter(const DeformableSurface& surface, const Bvh& bvh, const Claim& claim, LineSink line);
     ~CertificateWriter();
 
-    /// `verdict` is Verifier::check's of these supports. Throws std::invalid_argument for what is no frame of the claim.
+    /// `verdict` is Verifier::check's of these supports. Throws std::invalid_argument for what is no frame of the
+    /// claim.
     void frame(double time_s, std::span<const AffineMap> maps, std::span<const double> supports,
                const FrameVerdict& verdict);
     /// After the last of the frames claimed; a certificate without an end proves nothing.

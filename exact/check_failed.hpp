@@ -5,8 +5,8 @@
 
 namespace cinch {
 
-/// A check that this program makes of itself, and that failed: a verdict, as a refuted bound is one. What cannot be computed at all (bad input, no
-/// memory, an argument out of range) is another exception, and no verdict.
+/// A check that this program makes of itself, and that failed: a verdict, as a refuted bound is one. What cannot be
+/// computed at all (bad input, no memory, an argument out of range) is another exception, and no verdict.
 class CheckFailed : public std::logic_error {
 public:
     using std::logic_error::logic_error;

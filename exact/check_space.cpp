@@ -19,7 +19,8 @@ std::string space_fault(WeightSpace space, std::span<const double> b, std::span<
         return "optimum and feasibility disagree";
     if (best && exact.size() > 1) {
         std::vector<Exact> sorted = exact;
-        std::partial_sort(sorted.begin(), sorted.begin() + 2, sorted.end(), [](const Exact& x, const Exact& y) { return y < x; });
+        std::partial_sort(sorted.begin(), sorted.begin() + 2, sorted.end(),
+                          [](const Exact& x, const Exact& y) { return y < x; });
         const Exact eq12 = dual_value(space, exact, sorted[1]);
         if (eq12 < best->value)
             return "Eq. 12 lies below the optimum by " + as_fraction(best->value - eq12);

@@ -16,8 +16,8 @@ struct Claim {
     double lambda = 0; ///< if so, it claims to be at least D(λ) too
 };
 
-/// Empty if every claim holds exactly, the exact ladder optimum ≤ Eq. 12 ≤ max b is in order and feasibility is consistent;
-/// otherwise the first fault. Over an empty W' claims only have to be numbers. b and λ finite, 0 ≤ l ≤ h.
+/// Empty if every claim holds exactly, the exact ladder optimum ≤ Eq. 12 ≤ max b is in order and feasibility is
+/// consistent; otherwise the first fault. Over an empty W' claims only have to be numbers. b and λ finite, 0 ≤ l ≤ h.
 std::string space_fault(WeightSpace space, std::span<const double> b, std::span<const Claim> claims);
 
 /// Empty if the optimum equals the best of all corners, listed one by one; otherwise the difference. For small n.

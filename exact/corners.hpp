@@ -14,8 +14,9 @@ namespace cinch::exact {
 
 /// One vertex of W': every weight at its l or h but for at most one, which the sum to 1 decides.
 struct Corner {
-    std::span<const std::uint64_t> at_upper; ///< bit i of word i/64: weight CornerRun::order[i] is at h; the others are at l
-    int between = -1;                        ///< position in CornerRun::order of the weight strictly between l and h, or −1
+    std::span<const std::uint64_t>
+        at_upper;     ///< bit i of word i/64: weight CornerRun::order[i] is at h; the others are at l
+    int between = -1; ///< position in CornerRun::order of the weight strictly between l and h, or −1
 };
 
 /// What a visitor of corners needs to know of the run.
@@ -29,8 +30,8 @@ using CornerVisitor = std::function<bool(const CornerRun&, const Corner&)>;
 /// Exactly Σ l ≤ 1 ≤ Σ h and l ≤ h. The doubles may be any, dyadic to 2^-53 or not; spans of equal length.
 bool is_feasible(WeightSpace space);
 
-/// Visits every vertex of W' once, degenerate ones too, in exact integers of the narrowest kind that holds the input. Output-
-/// sensitive: every branch of the search leads to a vertex. Memory O(n). Returns how many were visited.
+/// Visits every vertex of W' once, degenerate ones too, in exact integers of the narrowest kind that holds the input.
+/// Output- sensitive: every branch of the search leads to a vertex. Memory O(n). Returns how many were visited.
 std::uint64_t visit_corners(WeightSpace space, const CornerVisitor& visit);
 
 /// The weights of a corner as fractions "p/q" in lowest terms.
@@ -41,7 +42,8 @@ struct CornerCount {
     std::optional<std::string> count; ///< decimal
     std::string reason;               ///< set where count is not
 };
-/// Meet in the middle up to 44 weights with l < h, dynamic programming on coarse grids beyond; otherwise it answers at once.
+/// Meet in the middle up to 44 weights with l < h, dynamic programming on coarse grids beyond; otherwise it answers at
+/// once.
 CornerCount count_corners(WeightSpace space);
 
 } // namespace cinch::exact

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// V = Σ_{A: r(A) < S} (N − 2|A|) + Σ_{A: r(A) = S} (1 − |A|) over the subsets A of the N weights with range r_j = h_j − l_j > 0,
-// S = 1 − Σ l. Proof: vertices are pairs (A, f ∉ A) with r(A) < S < r(A) + r_f, and the A with r(A) = S. Of the pairs with
-// r(A) < S, those with r(A ∪ f) < S are counted by |B| over B = A ∪ f with r(B) < S, those with r(A ∪ f) = S likewise.
+// V = Σ_{A: r(A) < S} (N − 2|A|) + Σ_{A: r(A) = S} (1 − |A|) over the subsets A of the N weights with range r_j = h_j −
+// l_j > 0, S = 1 − Σ l. Proof: vertices are pairs (A, f ∉ A) with r(A) < S < r(A) + r_f, and the A with r(A) = S. Of
+// the pairs with r(A) < S, those with r(A ∪ f) < S are counted by |B| over B = A ∪ f with r(B) < S, those with r(A ∪ f)
+// = S likewise.
 #include <limits>
 
 #include "exact/corners.hpp"
@@ -58,7 +59,8 @@ template <class Int> std::string count_in_the_middle(const Ranges<Int>& data)
     for (std::size_t i = 0; i < data.range.size(); ++i)
         half[i % 2].push_back(data.range[i]);
     const auto left = subset_sums<Int>(half[0]), right = subset_sums<Int>(half[1]);
-    std::int64_t total = 0, subsets = 0, elements = 0; // of right[0 … below), those with left + right < S; grows as left falls
+    std::int64_t total = 0, subsets = 0,
+                 elements = 0; // of right[0 … below), those with left + right < S; grows as left falls
     std::size_t below = 0;
     for (auto a = left.rbegin(); a != left.rend(); ++a) {
         while (below < right.size() && a->sum + right[below].sum < data.slack) {
@@ -75,7 +77,8 @@ template <class Int> std::string count_in_the_middle(const Ranges<Int>& data)
     return std::to_string(total);
 }
 
-// Where ranges and slack are multiples of a coarse unit: how many subsets, and how many elements in them, for every sum.
+// Where ranges and slack are multiples of a coarse unit: how many subsets, and how many elements in them, for every
+// sum.
 std::string count_on_grid(const std::vector<std::size_t>& range, std::size_t slack)
 {
     std::vector<mpz_class> subsets(slack + 1), elements(slack + 1);
@@ -122,7 +125,8 @@ CornerCount count_corners(WeightSpace space)
         }
         return {count_on_grid(range, cells.get_ui()), {}};
     }
-    return {std::nullopt, "not counted: " + std::to_string(free) + " weights are free, too many to count in halves, and their ranges share no coarse unit"};
+    return {std::nullopt, "not counted: " + std::to_string(free) +
+                              " weights are free, too many to count in halves, and their ranges share no coarse unit"};
 }
 
 } // namespace cinch::exact

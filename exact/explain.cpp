@@ -23,7 +23,10 @@ Extrema extrema_of(const OneBound& place)
     const Vec3& half = place.bvh.bvs[place.bv].box.half;
     if (!(std::isfinite(half[0]) && std::isfinite(half[1]) && std::isfinite(half[2])))
         throw std::invalid_argument("no finite bound follows from an infinite rest box");
-    Extrema out{place.bvh.rest(place.bv), axes_of(place.kdop)[static_cast<std::size_t>(place.direction / 2)], place.direction % 2 == 1, {}};
+    Extrema out{place.bvh.rest(place.bv),
+                axes_of(place.kdop)[static_cast<std::size_t>(place.direction / 2)],
+                place.direction % 2 == 1,
+                {}};
     for (std::uint32_t node : out.rest.node) {
         const auto both = extremum<Exact>(out.rest.box.centre, out.rest.box.half, place.maps[node], out.axis);
         out.b.push_back(out.against ? both.minus : both.plus);
@@ -43,12 +46,15 @@ Exact method_value(Methods methods, const Extrema& e, const Exact& best)
 }
 
 // The vertices that may be the farthest along the direction: all others lie behind one of them, by interval arithmetic.
-std::vector<std::uint32_t> farthest(const OneBound& place, const std::vector<std::uint32_t>& vertices, const Axis& axis, bool against)
+std::vector<std::uint32_t> farthest(const OneBound& place, const std::vector<std::uint32_t>& vertices, const Axis& axis,
+                                    bool against)
 {
     const DirectedRounding upward;
     std::vector<Interval> support;
     for (std::uint32_t k : vertices)
-        support.push_back(along(deformed<Interval>(place.surface.mesh.vertices[k], place.surface.weights.of(k), place.maps), axis, against));
+        support.push_back(
+            along(deformed<Interval>(place.surface.mesh.vertices[k], place.surface.weights.of(k), place.maps), axis,
+                  against));
     double reached = support[0].inf();
     for (const Interval& s : support)
         reached = std::max(reached, s.inf());
@@ -69,13 +75,15 @@ ExactLoss exact_loss(const OneBound& place)
     const bool against = place.direction % 2 == 1;
     const std::vector<std::uint32_t> ahead = farthest(place, vertices, axis, against);
     auto support_of = [&](std::uint32_t k) {
-        return along(deformed<Exact>(place.surface.mesh.vertices[k], place.surface.weights.of(k), place.maps), axis, against);
+        return along(deformed<Exact>(place.surface.mesh.vertices[k], place.surface.weights.of(k), place.maps), axis,
+                     against);
     };
     Exact truth = support_of(ahead[0]);
     for (std::uint32_t k : ahead)
         truth = maximum(truth, support_of(k));
     if (!place.methods.within(box_methods))
-        return {as_fraction(zero), as_fraction(zero), as_fraction(zero), as_fraction(bound - truth), as_fraction(bound - truth)};
+        return {as_fraction(zero), as_fraction(zero), as_fraction(zero), as_fraction(bound - truth),
+                as_fraction(bound - truth)};
 
     const Extrema e = extrema_of(place);
     const auto best = optimum(e.rest.space, e.b);
@@ -94,8 +102,8 @@ ExactLoss exact_loss(const OneBound& place)
         first = false;
     }
     const Exact value = method_value(place.methods, e, best->value);
-    return {as_fraction(boxes - truth), as_fraction(best->value - boxes), as_fraction(value - best->value), as_fraction(bound - value),
-            as_fraction(bound - truth)};
+    return {as_fraction(boxes - truth), as_fraction(best->value - boxes), as_fraction(value - best->value),
+            as_fraction(bound - value), as_fraction(bound - truth)};
 }
 
 std::string vipr(const OneBound& place)
@@ -111,7 +119,8 @@ std::string vipr(const OneBound& place)
             line += " " + std::to_string(j) + " " + value(j);
         return line;
     };
-    std::string out = "% BV " + std::to_string(place.bv) + ", direction " + std::to_string(place.direction) + "\nVER 1.0\nVAR " + std::to_string(n) + "\n";
+    std::string out = "% BV " + std::to_string(place.bv) + ", direction " + std::to_string(place.direction) +
+                      "\nVER 1.0\nVAR " + std::to_string(n) + "\n";
     for (std::uint32_t node : e.rest.node)
         out += "w" + std::to_string(node) + "\n";
     out += "INT 0\n\nOBJ max\n" + numbers([&](std::size_t j) { return as_fraction(e.b[j]); }) + "\n\n";
@@ -122,9 +131,11 @@ std::string vipr(const OneBound& place)
         out += "l" + name + " G " + as_fraction(Exact(e.rest.space.l[j])) + at;
         out += "h" + name + " L " + as_fraction(Exact(e.rest.space.h[j])) + at;
     }
-    // b_j = λ + (b_j − λ): λ times the sum, and b_j − λ times w_j ≤ h_j where it is positive, w_j ≥ l_j where it is negative.
+    // b_j = λ + (b_j − λ): λ times the sum, and b_j − λ times w_j ≤ h_j where it is positive, w_j ≥ l_j where it is
+    // negative.
     out += "\nRTP range -inf " + as_fraction(Exact(place.bound)) + "\n\nSOL 0\n\nDER 1\n";
-    out += "dual L " + as_fraction(best->value) + " OBJ { lin " + std::to_string(n + 1) + " 0 " + as_fraction(best->lambda);
+    out += "dual L " + as_fraction(best->value) + " OBJ { lin " + std::to_string(n + 1) + " 0 " +
+           as_fraction(best->lambda);
     for (std::size_t j = 0; j < n; ++j) {
         const Exact above = e.b[j] - best->lambda;
         out += " " + std::to_string(1 + 2 * j + (above > Exact(0) ? 1 : 0)) + " " + as_fraction(above);

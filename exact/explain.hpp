@@ -21,8 +21,8 @@ struct OneBound {
     double bound;
 };
 
-/// What the bound gives away, and why, as exact fractions that add up to `total` = bound − true support, along the axis as it
-/// is (not scaled to unit length). For methods other than the box_methods all of it counts as rounding.
+/// What the bound gives away, and why, as exact fractions that add up to `total` = bound − true support, along the axis
+/// as it is (not scaled to unit length). For methods other than the box_methods all of it counts as rounding.
 struct ExactLoss {
     std::string box;      ///< true support → rest boxes deformed with the vertices' actual weights
     std::string interval; ///< actual weights → the maximum over W'
@@ -32,8 +32,9 @@ struct ExactLoss {
 };
 ExactLoss exact_loss(const OneBound& place);
 
-/// The bound as a linear program with its proof, in the VIPR 1.0 format of `viprchk`: maximise Σ w_j b_j over W', at most `bound`,
-/// derived as one combination of Σ w = 1 with multiplier λ and of the weight intervals. For the box_methods.
+/// The bound as a linear program with its proof, in the VIPR 1.0 format of `viprchk`: maximise Σ w_j b_j over W', at
+/// most `bound`, derived as one combination of Σ w = 1 with multiplier λ and of the weight intervals. For the
+/// box_methods.
 std::string vipr(const OneBound& place);
 
 } // namespace cinch::exact

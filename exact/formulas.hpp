@@ -5,9 +5,9 @@
 
 #include <vector>
 
+#include "cinch/surface.hpp"
 #include "exact/number.hpp"
 #include "toolkit/bounds/bound_box.hpp"
-#include "cinch/surface.hpp"
 
 namespace cinch::exact {
 
@@ -78,7 +78,8 @@ template <class N> N image_along(const Column<N>& column, const Vec3& x)
     return image;
 }
 
-/// The greatest of the n(n − 1) corners of §5.2.2 of the paper, each listed: h at i, 1 − Σ of the rest at j, l elsewhere.
+/// The greatest of the n(n − 1) corners of §5.2.2 of the paper, each listed: h at i, 1 − Σ of the rest at j, l
+/// elsewhere.
 template <class N> N best_corner(WeightSpace space, const std::vector<N>& b)
 {
     if (b.size() == 1)

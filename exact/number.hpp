@@ -17,7 +17,8 @@ namespace cinch::exact {
 using Exact = CGAL::Gmpzf;
 /// Encloses the exact value; needs upward rounding, see DirectedRounding.
 using Interval = CGAL::Interval_nt<false>;
-/// While one of these lives, the thread rounds upward, as Interval requires. No toolkit function may be called meanwhile.
+/// While one of these lives, the thread rounds upward, as Interval requires. No toolkit function may be called
+/// meanwhile.
 using DirectedRounding = CGAL::Protect_FPU_rounding<true>;
 
 inline Exact maximum(const Exact& a, const Exact& b) { return a < b ? b : a; }

@@ -31,7 +31,8 @@ Scaled in_integers(WeightSpace space, const std::vector<Exact>& b)
     }
     for (const Exact& x : b) {
         out.b.emplace_back(x.man());
-        mpz_mul_2exp(out.b.back().get_mpz_t(), out.b.back().get_mpz_t(), static_cast<mp_bitcnt_t>(x.exp() - out.extremum_exponent));
+        mpz_mul_2exp(out.b.back().get_mpz_t(), out.b.back().get_mpz_t(),
+                     static_cast<mp_bitcnt_t>(x.exp() - out.extremum_exponent));
     }
     return out;
 }
@@ -92,8 +93,9 @@ std::optional<Optimum> optimum(WeightSpace space, const std::vector<Exact>& b)
         rounded.push_back(x.get_d());
     std::vector<std::size_t> order(b.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::sort(order.begin(), order.end(),
-              [&](std::size_t i, std::size_t j) { return rounded[i] != rounded[j] ? rounded[j] < rounded[i] : p.b[j] < p.b[i]; });
+    std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
+        return rounded[i] != rounded[j] ? rounded[j] < rounded[i] : p.b[j] < p.b[i];
+    });
 
     Optimum out;
     out.corner = p.l;

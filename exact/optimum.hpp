@@ -19,8 +19,8 @@ struct Optimum {
     int corner_bits = 0;
 };
 
-/// Empty if W' is. Fills the weights greedily from l, largest b first, in integers; before it returns, the corner is checked to
-/// lie in W', to attain the value, and to have no gap to D(λ) (CheckFailed otherwise, in every build).
+/// Empty if W' is. Fills the weights greedily from l, largest b first, in integers; before it returns, the corner is
+/// checked to lie in W', to attain the value, and to have no gap to D(λ) (CheckFailed otherwise, in every build).
 std::optional<Optimum> optimum(WeightSpace space, const std::vector<Exact>& b);
 
 } // namespace cinch::exact

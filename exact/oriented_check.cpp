@@ -10,7 +10,10 @@ template <class N> Point<N> OrientedCheck::cross(const Point<N>& a, const Point<
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-template <class N> N OrientedCheck::dot(const Point<N>& a, const Point<N>& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+template <class N> N OrientedCheck::dot(const Point<N>& a, const Point<N>& b)
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 template <class N> OrientedCheck::Face<N> OrientedCheck::face(const Point<N>& normal, const Point<N> (&axis)[3])
 {
@@ -28,8 +31,10 @@ OrientedCheck::OrientedCheck(const OrientedBox& box) : centre_(box.centre)
     }
     if (!valid_ || infinite_)
         return;
-    const Point<Interval> rough[3] = {as_point<Interval>(box.axis[0]), as_point<Interval>(box.axis[1]), as_point<Interval>(box.axis[2])};
-    const Point<Exact> axis[3] = {as_point<Exact>(box.axis[0]), as_point<Exact>(box.axis[1]), as_point<Exact>(box.axis[2])};
+    const Point<Interval> rough[3] = {as_point<Interval>(box.axis[0]), as_point<Interval>(box.axis[1]),
+                                      as_point<Interval>(box.axis[2])};
+    const Point<Exact> axis[3] = {as_point<Exact>(box.axis[0]), as_point<Exact>(box.axis[1]),
+                                  as_point<Exact>(box.axis[2])};
     for (std::size_t i = 0; i < 3; ++i) {
         filter_.push_back(face(cross(rough[i], rough[(i + 1) % 3]), rough));
         exact_.push_back(face(cross(axis[i], axis[(i + 1) % 3]), axis));
@@ -54,7 +59,8 @@ OrientedCheck::OrientedCheck(const OrientedBox& box) : centre_(box.centre)
 template <class N> bool OrientedCheck::within(const std::vector<Face<N>>& faces, const Vec3& x) const
 {
     const Point<N> y{N(x[0]) - N(centre_[0]), N(x[1]) - N(centre_[1]), N(x[2]) - N(centre_[2])};
-    return std::all_of(faces.begin(), faces.end(), [&](const Face<N>& f) { return certainly(absolute(dot(f.normal, y)) <= f.reach); });
+    return std::all_of(faces.begin(), faces.end(),
+                       [&](const Face<N>& f) { return certainly(absolute(dot(f.normal, y)) <= f.reach); });
 }
 
 bool OrientedCheck::contains(const Vec3& x) const

@@ -4,18 +4,18 @@
 
 #include <vector>
 
-#include "exact/formulas.hpp"
 #include "cinch/bvh.hpp"
+#include "exact/formulas.hpp"
 
 namespace cinch::exact {
 
-/// Decides x ∈ centre + Z, Z = {Σ β_i a_i : |β_i| ≤ 1}, whatever the axes a_i: reflected, exchanged, parallel or zero, so that Z is a
-/// parallelepiped, a polygon, a segment or a point. Z is the set of all y with
+/// Decides x ∈ centre + Z, Z = {Σ β_i a_i : |β_i| ≤ 1}, whatever the axes a_i: reflected, exchanged, parallel or zero,
+/// so that Z is a parallelepiped, a polygon, a segment or a point. Z is the set of all y with
 ///     |n·y| ≤ h(n) = Σ_i |n·a_i|
-/// for every n: h is its support function. Finitely many n do. With three independent axes those across two of them, its facets' normals.
-/// Else, whatever the rank: a_i × a_j and a_i × e_s, among which are normals that span the complement of Z's span, where h is 0; and
-/// (a_i × a_j) × a_k, a_i and e_s, among which are those of Z's edges or ends. Every other n is right too, only superfluous.
-/// Lives under DirectedRounding.
+/// for every n: h is its support function. Finitely many n do. With three independent axes those across two of them,
+/// its facets' normals. Else, whatever the rank: a_i × a_j and a_i × e_s, among which are normals that span the
+/// complement of Z's span, where h is 0; and (a_i × a_j) × a_k, a_i and e_s, among which are those of Z's edges or
+/// ends. Every other n is right too, only superfluous. Lives under DirectedRounding.
 class OrientedCheck {
 public:
     explicit OrientedCheck(const OrientedBox& box);

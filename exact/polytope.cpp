@@ -9,9 +9,9 @@
 #include <CGAL/Polyhedron_3.h>
 #include <CGAL/Simple_cartesian.h>
 
+#include "cinch/bounds.hpp"
 #include "exact/formulas.hpp"
 #include "exact/rest_data.hpp"
-#include "cinch/bounds.hpp"
 
 namespace cinch::exact {
 namespace {
@@ -40,7 +40,8 @@ CGAL::Gmpq six_volumes(const CGAL::Polyhedron_3<Kernel>& hull, const Corner3& ap
         const auto first = facet->facet_begin();
         auto second = std::next(first), third = std::next(second);
         for (; third != first; second = third, ++third)
-            sum += CGAL::determinant(first->vertex()->point() - apex, second->vertex()->point() - apex, third->vertex()->point() - apex);
+            sum += CGAL::determinant(first->vertex()->point() - apex, second->vertex()->point() - apex,
+                                     third->vertex()->point() - apex);
     }
     return sum;
 }
@@ -64,13 +65,16 @@ Polytope of_supports(int kdop, const std::vector<Exact>& supports)
     CGAL::halfspace_intersection_3(planes.begin(), planes.end(), hull, boost::make_optional(*interior));
 
     const CGAL::Gmpq volume = CGAL::abs(six_volumes(hull, *interior)) / CGAL::Gmpq(6);
-    out.volume = volume.numerator() == 0 ? "0/1" : mpz_class(volume.numerator().mpz()).get_str() + "/" + mpz_class(volume.denominator().mpz()).get_str();
+    out.volume = volume.numerator() == 0 ? "0/1"
+                                         : mpz_class(volume.numerator().mpz()).get_str() + "/" +
+                                               mpz_class(volume.denominator().mpz()).get_str();
     out.approximate_volume = CGAL::to_double(volume);
     const std::set<Corner3> corners(hull.points_begin(), hull.points_end()); // degenerate vertices come several times
     out.vertices = corners.size();
     for (std::size_t i = 0; i < planes.size(); ++i) {
         // Vertices are extreme points, so three of them on a plane span a facet.
-        const auto touching = std::count_if(corners.begin(), corners.end(), [&](const Corner3& p) { return planes[i].has_on(p); });
+        const auto touching =
+            std::count_if(corners.begin(), corners.end(), [&](const Corner3& p) { return planes[i].has_on(p); });
         if (touching < 3)
             out.redundant.push_back(static_cast<int>(i));
     }
@@ -79,9 +83,13 @@ Polytope of_supports(int kdop, const std::vector<Exact>& supports)
 
 } // namespace
 
-Polytope polytope(int kdop, std::span<const double> supports) { return of_supports(kdop, {supports.begin(), supports.end()}); }
+Polytope polytope(int kdop, std::span<const double> supports)
+{
+    return of_supports(kdop, {supports.begin(), supports.end()});
+}
 
-Polytope true_polytope(const DeformableSurface& surface, const Bvh& bvh, std::size_t bv, std::span<const AffineMap> maps, int kdop)
+Polytope true_polytope(const DeformableSurface& surface, const Bvh& bvh, std::size_t bv,
+                       std::span<const AffineMap> maps, int kdop)
 {
     std::vector<Point<Exact>> deformed_vertices;
     for (std::uint32_t k : vertices_of(surface, bvh, bv))

@@ -31,7 +31,8 @@ bool contains(double centre, double half, double x)
     return offset <= Exact(half) && -offset <= Exact(half);
 }
 
-// Whether |w − mean − gradient·y| ≤ residual and |(w − mean) y_i| ≤ moment_i, as far as N can tell. What is not finite says nothing.
+// Whether |w − mean − gradient·y| ≤ residual and |(w − mean) y_i| ≤ moment_i, as far as N can tell. What is not finite
+// says nothing.
 template <class N> bool model_holds(const WeightModel& model, double weight, const Vec3& x, const Vec3& pivot)
 {
     const N delta = N(weight) - N(model.mean);
@@ -58,14 +59,16 @@ template <class N> bool ball_holds(const RestBox& box, double radius, const Vec3
 }
 
 // Local boxes and balls, and the weight models. The points are the exact tests' business: a linear program each.
-std::string model_fault(const DeformableSurface& surface, const RestBv& rest, const OrientedBox& oriented, std::span<const std::uint32_t> vertices)
+std::string model_fault(const DeformableSurface& surface, const RestBv& rest, const OrientedBox& oriented,
+                        std::span<const std::uint32_t> vertices)
 {
     std::int64_t units = 0;
     for (std::size_t j = 0; j < rest.node.size(); ++j) {
         const WeightModel& model = rest.model[j];
         const double scaled = model.mean * 0x1p53;
         if (!(scaled >= 0 && scaled <= 0x1p53) || scaled != std::floor(scaled))
-            return "simulation node " + std::to_string(rest.node[j]) + ": mean weight " + hex(model.mean) + " is no multiple of 2^-53 up to 1";
+            return "simulation node " + std::to_string(rest.node[j]) + ": mean weight " + hex(model.mean) +
+                   " is no multiple of 2^-53 up to 1";
         units += static_cast<std::int64_t>(scaled);
         if (units > std::int64_t{1} << 53)
             break;
@@ -83,7 +86,7 @@ std::string model_fault(const DeformableSurface& surface, const RestBv& rest, co
         double weight;
     };
     std::vector<Doubt> balls, models; // where intervals do not decide
-    const DirectedRounding upward; // Exact is integers, whatever the rounding
+    const DirectedRounding upward;    // Exact is integers, whatever the rounding
     const OrientedCheck own_box(oriented);
     for (std::uint32_t k : vertices) {
         const Vec3& x = surface.mesh.vertices[k];
@@ -92,13 +95,15 @@ std::string model_fault(const DeformableSurface& surface, const RestBv& rest, co
         if (!own_box.contains(x))
             return "vertex " + std::to_string(k) + " lies outside the oriented box";
         for (std::size_t i = 0; i < row.node.size(); ++i) {
-            const auto j = static_cast<std::size_t>(std::lower_bound(rest.node.begin(), rest.node.end(), row.node[i]) - rest.node.begin());
+            const auto j = static_cast<std::size_t>(std::lower_bound(rest.node.begin(), rest.node.end(), row.node[i]) -
+                                                    rest.node.begin());
             places.push_back(j);
             weight[j] = row.weight[i];
             for (int s = 0; s < 3; ++s)
                 if (!(absolute(Interval(x[s]) - Interval(rest.local[j].centre[s])).sup() <= rest.local[j].half[s]) &&
                     !contains(rest.local[j].centre[s], rest.local[j].half[s], x[s]))
-                    return "vertex " + std::to_string(k) + ", simulation node " + std::to_string(row.node[i]) + ": lies outside its local box";
+                    return "vertex " + std::to_string(k) + ", simulation node " + std::to_string(row.node[i]) +
+                           ": lies outside its local box";
             if (!ball_holds<Interval>(rest.local[j], rest.radius[j], x))
                 balls.push_back({k, j, 0});
         }
@@ -108,7 +113,9 @@ std::string model_fault(const DeformableSurface& surface, const RestBv& rest, co
         for (std::size_t j : places)
             weight[j] = 0;
     }
-    auto where = [&](const Doubt& d) { return "vertex " + std::to_string(d.vertex) + ", simulation node " + std::to_string(rest.node[d.j]); };
+    auto where = [&](const Doubt& d) {
+        return "vertex " + std::to_string(d.vertex) + ", simulation node " + std::to_string(rest.node[d.j]);
+    };
     for (const Doubt& d : balls)
         if (!ball_holds<Exact>(rest.local[d.j], rest.radius[d.j], surface.mesh.vertices[d.vertex]))
             return where(d) + ": lies outside its local ball";
@@ -125,7 +132,8 @@ void require_dyadic_weights(const DeformableSurface& surface)
     const Weights& weights = surface.weights;
     if (weights.row.empty() || weights.row.front() != 0 || weights.vertex_count() != surface.mesh.vertices.size())
         refuse("the weights are not those of the mesh");
-    if (!std::is_sorted(weights.row.begin(), weights.row.end()) || weights.row.back() != weights.node.size() || weights.node.size() != weights.weight.size())
+    if (!std::is_sorted(weights.row.begin(), weights.row.end()) || weights.row.back() != weights.node.size() ||
+        weights.node.size() != weights.weight.size())
         refuse("the rows of the weights do not fit together");
     for (std::size_t k = 0; k < weights.vertex_count(); ++k) {
         const Weights::Row row = weights.of(k);
@@ -133,7 +141,8 @@ void require_dyadic_weights(const DeformableSurface& surface)
         for (std::size_t i = 0; i < row.node.size(); ++i) {
             const double scaled = row.weight[i] * 0x1p53;
             if (!(scaled >= 1 && scaled <= 0x1p53) || scaled != std::floor(scaled))
-                refuse("vertex " + std::to_string(k) + ": weight " + hex(row.weight[i]) + " is not a positive multiple of 2^-53 up to 1");
+                refuse("vertex " + std::to_string(k) + ": weight " + hex(row.weight[i]) +
+                       " is not a positive multiple of 2^-53 up to 1");
             if (row.node[i] >= weights.node_count || (i > 0 && row.node[i] <= row.node[i - 1]))
                 refuse("vertex " + std::to_string(k) + ": simulation nodes do not ascend or are out of range");
             units += static_cast<std::int64_t>(scaled); // fewer than 2^10 terms of at most 2^53 each could overflow,
@@ -170,15 +179,18 @@ void require_tree(const DeformableSurface& surface, const Bvh& bvh)
             refuse(name + " has triangles out of range");
         if (i == 0 && bv.triangle_count != triangles)
             refuse("the root does not hold every triangle");
-        if (std::size_t{bv.first_influence} + bv.influence_count > bvh.node.size() || bvh.l.size() != bvh.node.size() || bvh.h.size() != bvh.node.size())
+        if (std::size_t{bv.first_influence} + bv.influence_count > bvh.node.size() || bvh.l.size() != bvh.node.size() ||
+            bvh.h.size() != bvh.node.size())
             refuse(name + " has weight intervals out of range");
         if (bv.is_leaf())
             continue;
-        if (bv.first_child <= i || std::size_t{bv.first_child} + 1 >= bvh.bvs.size() || child[bv.first_child] || child[bv.first_child + 1])
+        if (bv.first_child <= i || std::size_t{bv.first_child} + 1 >= bvh.bvs.size() || child[bv.first_child] ||
+            child[bv.first_child + 1])
             refuse(name + " has no children of its own after it");
         child[bv.first_child] = child[bv.first_child + 1] = true;
         const Bv &left = bvh.bvs[bv.first_child], &right = bvh.bvs[bv.first_child + 1];
-        if (left.first_triangle != bv.first_triangle || right.first_triangle != left.first_triangle + left.triangle_count ||
+        if (left.first_triangle != bv.first_triangle ||
+            right.first_triangle != left.first_triangle + left.triangle_count ||
             left.triangle_count + right.triangle_count != bv.triangle_count)
             refuse(name + " does not hold its children's triangles");
     }
@@ -198,7 +210,8 @@ std::vector<std::uint32_t> vertices_of(const DeformableSurface& surface, const B
     return vertices;
 }
 
-std::string rest_data_fault(const DeformableSurface& surface, const Bvh& bvh, std::size_t index, std::span<const std::uint32_t> vertices)
+std::string rest_data_fault(const DeformableSurface& surface, const Bvh& bvh, std::size_t index,
+                            std::span<const std::uint32_t> vertices)
 {
     const Bv& bv = bvh.bvs[index];
     const RestBv rest = bvh.rest(index);
@@ -220,7 +233,8 @@ std::string rest_data_fault(const DeformableSurface& surface, const Bvh& bvh, st
         }
         for (double x : {low, high})
             if (!contains(bv.box.centre[axis], bv.box.half[axis], x))
-                return "the rest box does not contain " + std::string(1, static_cast<char>('x' + axis)) + " = " + hex(x);
+                return "the rest box does not contain " + std::string(1, static_cast<char>('x' + axis)) + " = " +
+                       hex(x);
     }
     std::vector<std::uint32_t> influenced(rest.node.size(), 0); // how many vertices a node influences
     for (std::uint32_t k : vertices) {
@@ -229,18 +243,21 @@ std::string rest_data_fault(const DeformableSurface& surface, const Bvh& bvh, st
             return "vertex " + std::to_string(k) + " has more influences than the BV says";
         for (std::size_t i = 0; i < row.node.size(); ++i) {
             const auto it = std::lower_bound(rest.node.begin(), rest.node.end(), row.node[i]);
-            const std::string where = "vertex " + std::to_string(k) + ", simulation node " + std::to_string(row.node[i]);
+            const std::string where =
+                "vertex " + std::to_string(k) + ", simulation node " + std::to_string(row.node[i]);
             if (it == rest.node.end() || *it != row.node[i])
                 return where + ": influences the BV but is not listed";
             const auto j = static_cast<std::size_t>(it - rest.node.begin());
             if (!(rest.space.l[j] <= row.weight[i] && row.weight[i] <= rest.space.h[j]))
-                return where + ": weight " + hex(row.weight[i]) + " lies outside [" + hex(rest.space.l[j]) + ", " + hex(rest.space.h[j]) + "]";
+                return where + ": weight " + hex(row.weight[i]) + " lies outside [" + hex(rest.space.l[j]) + ", " +
+                       hex(rest.space.h[j]) + "]";
             ++influenced[j];
         }
     }
     for (std::size_t j = 0; j < rest.node.size(); ++j)
         if (influenced[j] < vertices.size() && rest.space.l[j] > 0)
-            return "simulation node " + std::to_string(rest.node[j]) + ": l = " + hex(rest.space.l[j]) + ", but a vertex has weight 0";
+            return "simulation node " + std::to_string(rest.node[j]) + ": l = " + hex(rest.space.l[j]) +
+                   ", but a vertex has weight 0";
     return model_fault(surface, rest, bv.oriented, vertices);
 }
 

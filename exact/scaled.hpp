@@ -34,7 +34,8 @@ template <class Int> Int scaled(double x, int shift)
             mpz_tdiv_q_2exp(out.get_mpz_t(), out.get_mpz_t(), static_cast<mp_bitcnt_t>(-up)); // exact by assumption
     } else {
         out = static_cast<Int>(digits);
-        out = up >= 0 ? static_cast<Int>(out * (Int{1} << std::min(up, 126))) : static_cast<Int>(out >> std::min(-up, 63));
+        out = up >= 0 ? static_cast<Int>(out * (Int{1} << std::min(up, 126)))
+                      : static_cast<Int>(out >> std::min(-up, 63));
     }
     return out;
 }
@@ -73,7 +74,8 @@ template <class Int> Ranges<Int> ranges_of(WeightSpace space, int shift)
         if (range.back() > 0)
             out.order.push_back(static_cast<std::uint32_t>(j));
     }
-    std::stable_sort(out.order.begin(), out.order.end(), [&](std::uint32_t i, std::uint32_t j) { return range[i] > range[j]; });
+    std::stable_sort(out.order.begin(), out.order.end(),
+                     [&](std::uint32_t i, std::uint32_t j) { return range[i] > range[j]; });
     for (std::uint32_t j : out.order)
         out.range.push_back(range[j]);
     return out;

@@ -4,20 +4,24 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "cinch/deform.hpp"
+#include "cinch/environment.hpp"
 #include "exact/bv_check.hpp"
 #include "exact/rest_data.hpp"
-#include "cinch/deform.hpp"
 #include "toolkit/deform/parallel.hpp"
-#include "cinch/environment.hpp"
 
 namespace cinch::exact {
 std::string name_of(Statement statement)
 {
     switch (statement) {
-    case rest_data: return "rest data";
-    case weight_space: return "weight space";
-    case exact_vertices: return "exact vertices";
-    case computed_vertices: return "computed vertices";
+    case rest_data:
+        return "rest data";
+    case weight_space:
+        return "weight space";
+    case exact_vertices:
+        return "exact vertices";
+    case computed_vertices:
+        return "computed vertices";
     }
     return "unknown";
 }
@@ -28,7 +32,8 @@ void no_pause() {}
 
 } // namespace
 
-Verifier::Verifier(const DeformableSurface& surface, const Bvh& bvh, void (*pause)()) : surface_(surface), bvh_(bvh), pause_(pause ? pause : no_pause)
+Verifier::Verifier(const DeformableSurface& surface, const Bvh& bvh, void (*pause)())
+    : surface_(surface), bvh_(bvh), pause_(pause ? pause : no_pause)
 {
     require_default_arithmetic();
     require_dyadic_weights(surface);
@@ -44,7 +49,8 @@ Verifier::Verifier(const DeformableSurface& surface, const Bvh& bvh, void (*paus
     });
 }
 
-FrameVerdict Verifier::check(std::span<const AffineMap> maps, Methods methods, int kdop, std::span<const double> supports, RestShape shape) const
+FrameVerdict Verifier::check(std::span<const AffineMap> maps, Methods methods, int kdop,
+                             std::span<const double> supports, RestShape shape) const
 {
     const auto k = static_cast<std::size_t>(kdop);
     if (!is_kdop(kdop) || maps.size() != surface_.weights.node_count || supports.size() != bvh_.bvs.size() * k)
@@ -53,7 +59,8 @@ FrameVerdict Verifier::check(std::span<const AffineMap> maps, Methods methods, i
         for (const auto& row : map.m)
             for (double x : row)
                 if (!std::isfinite(x))
-                    throw std::invalid_argument("Verifier::check: a transform is not finite; there is no exact position to compare with");
+                    throw std::invalid_argument(
+                        "Verifier::check: a transform is not finite; there is no exact position to compare with");
 
     require_default_arithmetic();
     const std::size_t vertex_count = surface_.mesh.vertices.size();

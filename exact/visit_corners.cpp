@@ -6,11 +6,12 @@
 namespace cinch::exact {
 namespace {
 
-/// With ranges r_0 ≥ r_1 ≥ …, a vertex raises a subset A to h and leaves slack δ = S − r(A) ≥ 0. If δ = 0 all weights are at
-/// a bound: one vertex. Otherwise any f ∉ A with r_f > δ may take it: one vertex each. (r_f = δ is the vertex of A ∪ {f}.)
-/// A has a vertex iff its widest absentee p has r_p > δ: A holds 0 … p−1, and a set B of later ranges with r(B) in
-/// (S − P_p − r_p, S − P_p], P_p = r_0 + … + r_{p−1}. No range after p is wider than that window, so adding ranges one by one
-/// cannot jump over it: whenever all that are left together reach it, some subset lands in it, and no branch is dead.
+/// With ranges r_0 ≥ r_1 ≥ …, a vertex raises a subset A to h and leaves slack δ = S − r(A) ≥ 0. If δ = 0 all weights
+/// are at a bound: one vertex. Otherwise any f ∉ A with r_f > δ may take it: one vertex each. (r_f = δ is the vertex of
+/// A ∪ {f}.) A has a vertex iff its widest absentee p has r_p > δ: A holds 0 … p−1, and a set B of later ranges with
+/// r(B) in (S − P_p − r_p, S − P_p], P_p = r_0 + … + r_{p−1}. No range after p is wider than that window, so adding
+/// ranges one by one cannot jump over it: whenever all that are left together reach it, some subset lands in it, and no
+/// branch is dead.
 template <class Int> class Search {
 public:
     Search(WeightSpace space, int shift, const CornerVisitor& visit)
@@ -41,7 +42,11 @@ public:
     }
 
 private:
-    void raise(std::size_t i, bool up) { mask_[i / 64] = up ? mask_[i / 64] | std::uint64_t{1} << (i % 64) : mask_[i / 64] & ~(std::uint64_t{1} << (i % 64)); }
+    void raise(std::size_t i, bool up)
+    {
+        mask_[i / 64] =
+            up ? mask_[i / 64] | std::uint64_t{1} << (i % 64) : mask_[i / 64] & ~(std::uint64_t{1} << (i % 64));
+    }
 
     void emit(int between)
     {
@@ -58,7 +63,8 @@ private:
         auto first = next; // too wide ones cannot be raised
         if (first < n && data_.range[first] > delta)
             first = static_cast<std::size_t>(
-                std::partition_point(data_.range.begin() + static_cast<std::ptrdiff_t>(next), data_.range.end(), [&](const Int& r) { return r > delta; }) -
+                std::partition_point(data_.range.begin() + static_cast<std::ptrdiff_t>(next), data_.range.end(),
+                                     [&](const Int& r) { return r > delta; }) -
                 data_.range.begin());
         for (std::size_t i = first; i < n && !stopped_; ++i) {
             if (delta - suffix_[i] >= width_)
@@ -114,7 +120,8 @@ std::uint64_t visit_corners(WeightSpace space, const CornerVisitor& visit)
 {
     if (!is_feasible(space))
         return 0;
-    return with_integers(space, [&](auto kind, int shift) { return Search<decltype(kind)>(space, shift, visit).run(); });
+    return with_integers(space,
+                         [&](auto kind, int shift) { return Search<decltype(kind)>(space, shift, visit).run(); });
 }
 
 std::vector<std::string> weights_of(WeightSpace space, const CornerRun& run, const Corner& corner)

@@ -101,7 +101,8 @@ private:
         const bool hex = text.starts_with("0x") || text.starts_with("0X");
         if (hex)
             text.remove_prefix(2);
-        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x, hex ? std::chars_format::hex : std::chars_format::general);
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x,
+                                                  hex ? std::chars_format::hex : std::chars_format::general);
         if (error != std::errc{} || end != text.data() + text.size())
             return false;
         x = negative ? -x : x;
@@ -130,7 +131,8 @@ Case read_case(const std::filesystem::path& path)
 {
     std::error_code error;
     const std::filesystem::path shipped = shipped_folder("cases") / (path.string() + ".json");
-    const bool known = path.has_filename() && !path.has_parent_path() && !std::filesystem::exists(path, error) && std::filesystem::exists(shipped, error);
+    const bool known = path.has_filename() && !path.has_parent_path() && !std::filesystem::exists(path, error) &&
+                       std::filesystem::exists(shipped, error);
     return parse_case(read_bytes(known ? shipped : path), path.string());
 }
 

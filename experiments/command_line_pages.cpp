@@ -2,9 +2,9 @@
 // The commands whose results are pages.
 #include <fmt/format.h>
 
+#include "cinch/bounds.hpp"
 #include "experiments/command_line.hpp"
 #include "experiments/simulation/find_scene.hpp"
-#include "cinch/bounds.hpp"
 #include "toolkit/surface/shapes.hpp"
 
 namespace cinch {
@@ -12,36 +12,77 @@ namespace cinch {
 void add_view(CLI::App& app, ViewOptions& o)
 {
     CLI::App& command = *app.add_subcommand("view", "a page to look at: surface, nodes, bounds (Figs. 1, 6, 7)");
-    auto option = [&](const char* name, auto& value, const std::string& description) { return command.add_option(name, value, wrapped(description)); };
-    CLI::Option* scene =
-        option("SCENE", o.request.scene,
-               fmt::format("a scene ({}, or a .json file), a shape ({}), a mesh or a skinned character [the paper's figures: brain-pull, santa-ring-6 and fishes]",
-                           fmt::join(shipped_scenes(), ", "), fmt::join(shape_names(), ", ")))
-            ->option_text("");
+    auto option = [&](const char* name, auto& value, const std::string& description) {
+        return command.add_option(name, value, wrapped(description));
+    };
+    CLI::Option* scene = option("SCENE", o.request.scene,
+                                fmt::format("a scene ({}, or a .json file), a shape ({}), a mesh or a skinned "
+                                            "character [the paper's figures: brain-pull, santa-ring-6 and fishes]",
+                                            fmt::join(shipped_scenes(), ", "), fmt::join(shape_names(), ", ")))
+                             ->option_text("");
     option("--report", o.report, "the page to write; it needs nothing else, and no network")->option_text("FILE.html");
     command.add_flag("--json", o.json, wrapped("the views as JSON Lines on standard output and nothing else"));
-    option("--frames", o.request.frames, "how many at most, evenly spread, the first and the last included [60]")->check(CLI::Range(1, 10000))->option_text("N")->needs(scene);
-    option("--levels", o.request.levels, "levels of the BVH, from the root [8]")->check(CLI::Range(1, 16))->option_text("N")->needs(scene);
-    option("--kdop", o.request.kdop, "greatest k to choose from on the page: " + kdop_names() + " [6]")->check(CLI::IsMember(std::vector(kdops.begin(), kdops.end())))->option_text("K")->needs(scene);
-    command.add_option_function<std::vector<std::string>>("--methods", [&o](const std::vector<std::string>& names) {
-        o.request.methods.clear();
-        for (const std::string& name : names) {
-            const auto method = named_method(name);
-            if (!method || *method == Method::vertices)
-                throw CLI::ValidationError("--methods", fmt::format("expected names of {}, found '{}'", fmt::join(method_names(all_methods.without(Method::vertices)), ", "), name));
-            o.request.methods.push_back(*method);
-        }
-        o.request.method = o.request.methods.front();
-    }, wrapped("to choose from on the page, the first one shown first [all; best]; beside each, the vertices' own bound"))->delimiter(',')->option_text("NAME,...")->needs(scene);
-    option("--bits", o.request.bits, "of the grid that positions are rounded to [16]; fewer make a smaller page")->check(CLI::Range(8, 16))->option_text("N")->needs(scene);
-    option("--nodes", o.request.nodes, "simulation nodes per body, where they are sampled [as usual]")->check(CLI::Range(1, 100000))->option_text("N")->needs(scene);
+    option("--frames", o.request.frames, "how many at most, evenly spread, the first and the last included [60]")
+        ->check(CLI::Range(1, 10000))
+        ->option_text("N")
+        ->needs(scene);
+    option("--levels", o.request.levels, "levels of the BVH, from the root [8]")
+        ->check(CLI::Range(1, 16))
+        ->option_text("N")
+        ->needs(scene);
+    option("--kdop", o.request.kdop, "greatest k to choose from on the page: " + kdop_names() + " [6]")
+        ->check(CLI::IsMember(std::vector(kdops.begin(), kdops.end())))
+        ->option_text("K")
+        ->needs(scene);
+    command
+        .add_option_function<std::vector<std::string>>(
+            "--methods",
+            [&o](const std::vector<std::string>& names) {
+                o.request.methods.clear();
+                for (const std::string& name : names) {
+                    const auto method = named_method(name);
+                    if (!method || *method == Method::vertices)
+                        throw CLI::ValidationError(
+                            "--methods",
+                            fmt::format("expected names of {}, found '{}'",
+                                        fmt::join(method_names(all_methods.without(Method::vertices)), ", "), name));
+                    o.request.methods.push_back(*method);
+                }
+                o.request.method = o.request.methods.front();
+            },
+            wrapped("to choose from on the page, the first one shown first [all; best]; beside each, the vertices' own "
+                    "bound"))
+        ->delimiter(',')
+        ->option_text("NAME,...")
+        ->needs(scene);
+    option("--bits", o.request.bits, "of the grid that positions are rounded to [16]; fewer make a smaller page")
+        ->check(CLI::Range(8, 16))
+        ->option_text("N")
+        ->needs(scene);
+    option("--nodes", o.request.nodes, "simulation nodes per body, where they are sampled [as usual]")
+        ->check(CLI::Range(1, 100000))
+        ->option_text("N")
+        ->needs(scene);
     option("--seed", o.request.seed, "seed of everything random [0]")->option_text("N");
-    command.add_flag("--partial", o.request.partial, wrapped("of a character: what is modelled, saying what is missing [refused]"))->needs(scene);
-    command.add_option_function<std::vector<double>>("--camera", [&o](const std::vector<double>& degrees) {
-        o.request.azimuth = degrees[0];
-        o.request.elevation = degrees[1];
-    }, wrapped("where it is at first: degrees from +x towards +y, and up [35,20]"))->delimiter(',')->expected(2)->option_text("A,E")->needs(scene);
-    option("--threads", o.threads, "threads [all cores]; the page is the same")->check(CLI::Range(1, 1024))->option_text("N");
+    command
+        .add_flag("--partial", o.request.partial,
+                  wrapped("of a character: what is modelled, saying what is missing [refused]"))
+        ->needs(scene);
+    command
+        .add_option_function<std::vector<double>>(
+            "--camera",
+            [&o](const std::vector<double>& degrees) {
+                o.request.azimuth = degrees[0];
+                o.request.elevation = degrees[1];
+            },
+            wrapped("where it is at first: degrees from +x towards +y, and up [35,20]"))
+        ->delimiter(',')
+        ->expected(2)
+        ->option_text("A,E")
+        ->needs(scene);
+    option("--threads", o.threads, "threads [all cores]; the page is the same")
+        ->check(CLI::Range(1, 1024))
+        ->option_text("N");
     command.footer("Examples:\n"
                    "  cinch view --report figures.html      Figs. 1, 6 and 7, about a minute\n"
                    "  cinch view brain-pull --report brain.html --kdop 26\n"
@@ -58,7 +99,9 @@ void add_view(CLI::App& app, ViewOptions& o)
 void add_reproduce(CLI::App& app, ReproduceOptions& o)
 {
     CLI::App& command = *app.add_subcommand("reproduce", "all of the paper's tables and figures, as a page");
-    command.add_flag("--quick", o.quick, wrapped("fewer scenes, frames and repetitions: under three minutes on two cores, instead of under 45"));
+    command.add_flag(
+        "--quick", o.quick,
+        wrapped("fewer scenes, frames and repetitions: under three minutes on two cores, instead of under 45"));
     command.add_option("--out", o.out, wrapped("folder for the results and report.html [results]"))->option_text("DIR");
     command.add_option("--seed", o.seed, wrapped("seed of everything random [0]"))->option_text("N");
     command.footer("Runs the experiments that are not in DIR yet, for this commit and these options,\n"
@@ -79,7 +122,9 @@ void add_reproduce(CLI::App& app, ReproduceOptions& o)
 void add_report(CLI::App& app, ReportOptions& o)
 {
     CLI::App& command = *app.add_subcommand("report", "the page of 'cinch reproduce', from stored results");
-    command.add_option("DIR", o.folder, wrapped("folder that 'cinch reproduce --out DIR' wrote"))->required()->option_text("");
+    command.add_option("DIR", o.folder, wrapped("folder that 'cinch reproduce --out DIR' wrote"))
+        ->required()
+        ->option_text("");
     command.add_option("--page", o.page, wrapped("file to write [DIR/report.html]"))->option_text("FILE.html");
     command.footer("A file that is truncated or damaged is named, with the line, and left out.\n"
                    "\n"

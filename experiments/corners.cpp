@@ -6,14 +6,14 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "cinch/environment.hpp"
+#include "cinch/surface.hpp"
 #include "exact/answers.hpp"
 #include "exact/corners.hpp"
 #include "experiments/case_file.hpp"
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/whole_file.hpp"
 #include "toolkit/bounds/rounding.hpp"
-#include "cinch/environment.hpp"
-#include "cinch/surface.hpp"
 #include "toolkit/bounds/weight_space.hpp"
 
 namespace cinch {
@@ -34,9 +34,12 @@ struct Row {
     double bound = 0;
 };
 
-Json record_of(const std::string& file, const Case& problem, bool feasible, const exact::CornerCount& count, const std::vector<Row>& rows)
+Json record_of(const std::string& file, const Case& problem, bool feasible, const exact::CornerCount& count,
+               const std::vector<Row>& rows)
 {
-    Json record{{"experiment", "corners"}, {"file", file}, {"n", problem.space().l.size()}, {"feasible", feasible}, {"vertex_count", nullptr}, {"rows", Json::array()}};
+    Json record{{"experiment", "corners"},       {"file", file},
+                {"n", problem.space().l.size()}, {"feasible", feasible},
+                {"vertex_count", nullptr},       {"rows", Json::array()}};
     if (count.count)
         record["vertex_count"] = *count.count;
     else
@@ -44,8 +47,12 @@ Json record_of(const std::string& file, const Case& problem, bool feasible, cons
     for (const Row& row : rows) {
         Json r{{"exact_max", nullptr}, {"eq12", nullptr}, {"bound", nullptr}, {"lambda", nullptr}};
         if (row.answer) {
-            r = {{"exact_max", row.answer->maximum}, {"eq12", nullptr}, {"bound", fmt::format("{:a}", row.bound)}, {"lambda", row.answer->lambda},
-                 {"corner", row.answer->corner}, {"bound_holds", row.answer->bound_holds}};
+            r = {{"exact_max", row.answer->maximum},
+                 {"eq12", nullptr},
+                 {"bound", fmt::format("{:a}", row.bound)},
+                 {"lambda", row.answer->lambda},
+                 {"corner", row.answer->corner},
+                 {"bound_holds", row.answer->bound_holds}};
             if (row.answer->eq12)
                 r["eq12"] = *row.answer->eq12;
         }
@@ -56,13 +63,15 @@ Json record_of(const std::string& file, const Case& problem, bool feasible, cons
 
 void print_text(const std::string& file, bool feasible, const exact::CornerCount& count, const std::vector<Row>& rows)
 {
-    fmt::print("{}: {}, {}\n", file, feasible ? "feasible" : "infeasible: no weights sum to 1", count.count ? *count.count + " corners" : count.reason);
+    fmt::print("{}: {}, {}\n", file, feasible ? "feasible" : "infeasible: no weights sum to 1",
+               count.count ? *count.count + " corners" : count.reason);
     for (std::size_t i = 0; i < rows.size(); ++i) {
         if (!rows[i].answer)
             continue;
         const exact::Answer& a = *rows[i].answer;
-        fmt::print("  b[{}]  maximum {}\n        Eq. 12  {}\n        bound   {:a} = {:.17g}{}\n        lambda  {}\n", i, a.maximum,
-                   a.eq12 ? *a.eq12 : "undefined for n = 1", rows[i].bound, rows[i].bound, a.bound_holds ? "" : ", BELOW the maximum", a.lambda);
+        fmt::print("  b[{}]  maximum {}\n        Eq. 12  {}\n        bound   {:a} = {:.17g}{}\n        lambda  {}\n", i,
+                   a.maximum, a.eq12 ? *a.eq12 : "undefined for n = 1", rows[i].bound, rows[i].bound,
+                   a.bound_holds ? "" : ", BELOW the maximum", a.lambda);
     }
 }
 
@@ -73,7 +82,13 @@ void list_corners(const std::string& file, WeightSpace space, const CornersOptio
     exact::visit_corners(space, [&](const exact::CornerRun& run, const exact::Corner& corner) {
         const std::vector<std::string> weights = exact::weights_of(space, run, corner);
         if (options.output.json) // one of very many: without provenance
-            fmt::print("{}\n", Json{{"experiment", "corners"}, {"file", file}, {"corner", weights}, {"frames_done", 0}, {"frames", 0}, {"complete", true}}.dump(-1, ' ', false, Json::error_handler_t::replace));
+            fmt::print("{}\n", Json{{"experiment", "corners"},
+                                    {"file", file},
+                                    {"corner", weights},
+                                    {"frames_done", 0},
+                                    {"frames", 0},
+                                    {"complete", true}}
+                                   .dump(-1, ' ', false, Json::error_handler_t::replace));
         else
             fmt::print("{}\n", fmt::join(weights, " "));
         return ++listed != options.limit && !interrupted();
@@ -131,7 +146,8 @@ int corners(const CornersOptions& options)
     } catch (const Interrupted&) { // files before it are kept
     }
     const bool is_complete = done == options.files.size();
-    const Completeness completeness{0, 0, is_complete, is_complete ? "" : interrupted_after(done, options.files.size(), "files")};
+    const Completeness completeness{0, 0, is_complete,
+                                    is_complete ? "" : interrupted_after(done, options.files.size(), "files")};
     output.set(completeness);
     if (!is_complete) // those that came before had no way to know
         output.add({{"experiment", "corners"}, {"files_done", done}, {"files", options.files.size()}});

@@ -16,8 +16,8 @@ struct CornersOptions {
     std::uint64_t limit = 0; ///< most corners listed per file; 0: all
 };
 
-/// Answers each case file. Exit status: 0, 1 if a toolkit bound lies below the exact maximum, 2 if a file is bad (the others are
-/// answered), 130 interrupted.
+/// Answers each case file. Exit status: 0, 1 if a toolkit bound lies below the exact maximum, 2 if a file is bad (the
+/// others are answered), 130 interrupted.
 int corners(const CornersOptions& options);
 
 } // namespace cinch

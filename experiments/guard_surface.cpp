@@ -18,7 +18,8 @@ std::string decoded(const std::string& uri)
     std::string out;
     for (std::size_t i = 0; i < uri.size(); ++i) {
         unsigned char byte = 0;
-        if (uri[i] == '%' && i + 2 < uri.size() && std::from_chars(&uri[i + 1], &uri[i + 3], byte, 16).ptr == &uri[i + 3]) {
+        if (uri[i] == '%' && i + 2 < uri.size() &&
+            std::from_chars(&uri[i + 1], &uri[i + 3], byte, 16).ptr == &uri[i + 3]) {
             out += static_cast<char>(byte);
             i += 2;
         } else {
@@ -39,7 +40,8 @@ void guard_surface(const std::filesystem::path& file)
     if (extension != ".gltf")
         return;
     std::ifstream in(file, std::ios::binary);
-    const nlohmann::json root = nlohmann::json::parse(in, nullptr, false); // what is no JSON is for the reader to refuse
+    const nlohmann::json root =
+        nlohmann::json::parse(in, nullptr, false); // what is no JSON is for the reader to refuse
     for (const char* list : {"buffers", "images"})
         if (root.is_object() && root.contains(list) && root[list].is_array())
             for (const auto& entry : root[list])

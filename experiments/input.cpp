@@ -24,7 +24,10 @@ namespace cinch {
 namespace {
 
 // Simulation nodes of the shipped shapes, as in the paper.
-std::size_t usual_nodes(const std::string& shape) { return shape.starts_with("brain") ? 509 : shape.starts_with("santa") ? 115 : 96; }
+std::size_t usual_nodes(const std::string& shape)
+{
+    return shape.starts_with("brain") ? 509 : shape.starts_with("santa") ? 115 : 96;
+}
 
 void refuse_options(const InputOptions& o, bool scripted, bool clips, bool sampled)
 {
@@ -33,9 +36,11 @@ void refuse_options(const InputOptions& o, bool scripted, bool clips, bool sampl
             throw InputError(fmt::format("{} needs {}", option, needs));
     };
     if (!scripted) {
-        refuse(o.nodes != 0, "--nodes", "a shape or a mesh without --weights; this input brings its own simulation nodes");
+        refuse(o.nodes != 0, "--nodes",
+               "a shape or a mesh without --weights; this input brings its own simulation nodes");
         refuse(o.support != 0, "--support", "a shape or a mesh without --weights; this input brings its own weights");
-        refuse(!o.motion.empty(), "--motion", "a shape or a mesh without --transforms; this input brings its own motion");
+        refuse(!o.motion.empty(), "--motion",
+               "a shape or a mesh without --transforms; this input brings its own motion");
     }
     if (!clips)
         refuse(!o.clip.empty(), "--clip", "a skinned character (.glb, .gltf) or --transforms");
@@ -56,14 +61,18 @@ void script(Input& input, const InputOptions& options, std::size_t default_nodes
     const std::size_t wanted = options.nodes ? options.nodes : default_nodes;
     const SimulationNodes nodes = sample_nodes(input.surface.mesh, wanted, options.seed);
     std::size_t alone = 0;
-    input.surface.weights = kernel_weights(input.surface.mesh, nodes, options.support > 0 ? options.support : 2, &alone);
+    input.surface.weights =
+        kernel_weights(input.surface.mesh, nodes, options.support > 0 ? options.support : 2, &alone);
     input.clip = scripted_clip(*motion, nodes.position, options.frames ? options.frames : 4);
     input.clip.name = motion_name;
     input.nodes = nodes.position;
     if (nodes.position.size() < wanted)
-        input.report.push_back(fmt::format("only {} for {} simulation nodes", counted(nodes.position.size(), "distinct place", "distinct places"), grouped(wanted)));
+        input.report.push_back(fmt::format("only {} for {} simulation nodes",
+                                           counted(nodes.position.size(), "distinct place", "distinct places"),
+                                           grouped(wanted)));
     if (alone)
-        input.report.push_back(fmt::format("{} beyond the reach of every simulation node; each follows its nearest one", counted(alone, "vertex lies", "vertices lie")));
+        input.report.push_back(fmt::format("{} beyond the reach of every simulation node; each follows its nearest one",
+                                           counted(alone, "vertex lies", "vertices lie")));
 }
 
 // Normalises the weights of a file.
@@ -72,14 +81,19 @@ void take_weights(Input& input, const Influences& influences)
     WeightReport& weights = input.weights_read;
     input.surface.weights = to_dyadic(influences, &weights);
     if (weights.normalised)
-        input.report.push_back(fmt::format("{} of {} had weights that do not sum to 1 (sums {:.7g} to {:.7g}); normalised, which changed weights by up to {:.3g} %{}",
-                                           grouped(weights.normalised), counted(weights.vertices, "vertex", "vertices"), weights.least_sum, weights.greatest_sum,
-                                           100 * weights.largest_change, influences.step > 0 && !weights.beyond_steps ? ", no more than their integers are coarse" : ""));
+        input.report.push_back(fmt::format(
+            "{} of {} had weights that do not sum to 1 (sums {:.7g} to {:.7g}); normalised, which changed weights by "
+            "up to {:.3g} %{}",
+            grouped(weights.normalised), counted(weights.vertices, "vertex", "vertices"), weights.least_sum,
+            weights.greatest_sum, 100 * weights.largest_change,
+            influences.step > 0 && !weights.beyond_steps ? ", no more than their integers are coarse" : ""));
     if (weights.without_weight)
-        input.report.push_back(fmt::format("{} no weight at all; bound to the first simulation node named", counted(weights.without_weight, "vertex has", "vertices have")));
+        input.report.push_back(fmt::format("{} no weight at all; bound to the first simulation node named",
+                                           counted(weights.without_weight, "vertex has", "vertices have")));
 }
 
-template <class Named> const Named& choose_clip(const std::vector<Named>& clips, const std::string& wanted, const std::string& file)
+template <class Named>
+const Named& choose_clip(const std::vector<Named>& clips, const std::string& wanted, const std::string& file)
 {
     std::string known;
     for (const Named& clip : clips) {
@@ -98,18 +112,25 @@ void load_character(Input& input, const InputOptions& options)
         throw InputError("--weights and --transforms need a mesh (OBJ, OFF, PLY, STL)");
     Character character = read_gltf(options.input, Coverage::partial);
     const bool rest = character.animations.empty() && options.clip.empty();
-    const Character::Animation& animation = rest ? character.rest : choose_clip(character.animations, options.clip, options.input);
+    const Character::Animation& animation =
+        rest ? character.rest : choose_clip(character.animations, options.clip, options.input);
     input.missing = character.missing;
     input.missing.insert(input.missing.end(), animation.missing.begin(), animation.missing.end());
     if (!input.missing.empty() && !options.partial)
-        throw InputError::in_file(options.input, fmt::format("has {}; --partial bounds the rest, and every result says so", not_modelled(input.missing)));
+        throw InputError::in_file(
+            options.input,
+            fmt::format("has {}; --partial bounds the rest, and every result says so", not_modelled(input.missing)));
     const Clip clip = sample(character, animation, options.fps > 0 ? options.fps : 30);
-    constexpr std::size_t most_frames = 1'000'000; // of which nobody waits for the end; a choice among more is no trouble
+    constexpr std::size_t most_frames =
+        1'000'000; // of which nobody waits for the end; a choice among more is no trouble
     if (options.frames == 0 && clip.frame_count() > most_frames)
-        throw InputError::in_file(options.input, fmt::format("clip '{}' has {} frames at this rate; --frames chooses some, --fps takes fewer", clip.name, grouped(clip.frame_count())));
+        throw InputError::in_file(
+            options.input, fmt::format("clip '{}' has {} frames at this rate; --frames chooses some, --fps takes fewer",
+                                       clip.name, grouped(clip.frame_count())));
     input.clip = evenly_spread(clip, options.frames);
     if (character.animations.size() > 1 && options.clip.empty())
-        input.report.push_back(fmt::format("{} clips; the first is used, --clip chooses another", character.animations.size()));
+        input.report.push_back(
+            fmt::format("{} clips; the first is used, --clip chooses another", character.animations.size()));
     input.report.insert(input.report.end(), character.notes.begin(), character.notes.end());
     input.report.insert(input.report.end(), animation.notes.begin(), animation.notes.end());
     if (!input.missing.empty())
@@ -143,7 +164,8 @@ Inputs load_scene(const InputOptions& options)
 {
     refuse_options(options, true, false, false);
     if (!options.motion.empty() || options.support != 0 || !options.weights.empty() || !options.transforms.empty())
-        throw InputError(fmt::format("{} is a scene: --motion, --support, --weights and --transforms do not apply", options.input));
+        throw InputError(
+            fmt::format("{} is a scene: --motion, --support, --weights and --transforms do not apply", options.input));
     SceneChanges changes;
     changes.nodes = options.nodes;
     FoundScene found = find_scene(options.input, changes);
@@ -156,7 +178,8 @@ Inputs load_scene(const InputOptions& options)
             chosen.push_back(b);
     if (chosen.empty())
         throw InputError(fmt::format("--body {}: scene '{}' has no body of that name", options.body, options.input));
-    const std::size_t last = simulation.frame_count() - 1, wanted = std::min(options.frames ? options.frames : 4, std::max<std::size_t>(last, 1));
+    const std::size_t last = simulation.frame_count() - 1,
+                      wanted = std::min(options.frames ? options.frames : 4, std::max<std::size_t>(last, 1));
     for (const std::size_t b : chosen) {
         Input body;
         body.name = simulation.bodies().size() == 1 ? options.input : options.input + "/" + simulation.bodies()[b].name;
@@ -182,9 +205,12 @@ Inputs load_scene(const InputOptions& options)
             throw_if_interrupted();
             for (std::size_t b = 0; b < steps.size(); ++b)
                 if (!steps[b].failure.empty())
-                    throw InputError(fmt::format("{}: the scene cannot be simulated: body '{}' at {:.6g} s: {}; a shorter \"step\" in its integration may do it, and 'cinch simulate {}' "
-                                                 "shows how far it comes",
-                                                 options.input, simulation.bodies()[b].name, simulation.time_s(), steps[b].failure, options.input));
+                    throw InputError(
+                        fmt::format("{}: the scene cannot be simulated: body '{}' at {:.6g} s: {}; a shorter \"step\" "
+                                    "in its integration may do it, and 'cinch simulate {}' "
+                                    "shows how far it comes",
+                                    options.input, simulation.bodies()[b].name, simulation.time_s(), steps[b].failure,
+                                    options.input));
             if (options.last_frames ? f + wanted > last : f * wanted / last != (f - 1) * wanted / last)
                 record();
             progress.done(f);
@@ -201,10 +227,12 @@ Inputs load_scene(const InputOptions& options)
         nodes += body.surface.weights.node_count;
         influences += body.surface.weights.node.size();
     }
-    inputs.report = {fmt::format("{}: {}, {}, {}", options.input, counted(inputs.bodies.size(), "body", "bodies"), counted(vertices, "vertex", "vertices"),
-                                 counted(triangles, "triangle", "triangles")),
-                     fmt::format("{}, {:.1f} influences per vertex; simulated, {}", counted(nodes, "simulation node", "simulation nodes"),
-                                 static_cast<double>(influences) / static_cast<double>(vertices), counted(inputs.bodies[0].clip.frame_count(), "frame", "frames"))};
+    inputs.report = {fmt::format("{}: {}, {}, {}", options.input, counted(inputs.bodies.size(), "body", "bodies"),
+                                 counted(vertices, "vertex", "vertices"), counted(triangles, "triangle", "triangles")),
+                     fmt::format("{}, {:.1f} influences per vertex; simulated, {}",
+                                 counted(nodes, "simulation node", "simulation nodes"),
+                                 static_cast<double>(influences) / static_cast<double>(vertices),
+                                 counted(inputs.bodies[0].clip.frame_count(), "frame", "frames"))};
     const std::vector<std::string> notes = simulation.notes();
     inputs.report.insert(inputs.report.end(), notes.begin(), notes.end());
     return inputs;
@@ -230,7 +258,10 @@ nlohmann::ordered_json fields(const std::vector<std::string>& missing, std::span
         normalised += body.weights_read.normalised;
         change = std::max(change, body.weights_read.largest_change);
     }
-    return {{"partial", !missing.empty()}, {"missing", missing}, {"weights_normalised", normalised}, {"largest_weight_change", change}};
+    return {{"partial", !missing.empty()},
+            {"missing", missing},
+            {"weights_normalised", normalised},
+            {"largest_weight_change", change}};
 }
 
 } // namespace
@@ -289,21 +320,24 @@ Input load_input(const InputOptions& options)
         else
             load_skin_text(input, options);
     } else {
-        throw InputError::in_file(options.input, std::filesystem::exists(options.input)
-                                                     ? "unknown format; known are " + mesh_extensions(", .glb, .gltf")
-                                                     : fmt::format("no such file, and no shape ({}) or scene ({}) of that name", fmt::join(shape_names(), ", "),
-                                                                   fmt::join(shipped_scenes(), ", ")));
+        throw InputError::in_file(options.input,
+                                  std::filesystem::exists(options.input)
+                                      ? "unknown format; known are " + mesh_extensions(", .glb, .gltf")
+                                      : fmt::format("no such file, and no shape ({}) or scene ({}) of that name",
+                                                    fmt::join(shape_names(), ", "), fmt::join(shipped_scenes(), ", ")));
     }
     if (input.surface.mesh.triangles.empty())
         throw InputError::in_file(options.input, "has no skinned triangles; there is nothing to bound");
     const auto& weights = input.surface.weights;
-    const std::string influences = fmt::format("{:.1f}", static_cast<double>(weights.node.size()) / static_cast<double>(weights.vertex_count()));
-    input.report.insert(input.report.begin(),
-                        {fmt::format("{}: {}, {}", input.name, counted(input.surface.mesh.vertices.size(), "vertex", "vertices"),
-                                     counted(input.surface.mesh.triangles.size(), "triangle", "triangles")),
-                         fmt::format("{}, {} influences per vertex; motion '{}', {}",
-                                     counted(weights.node_count, "simulation node", "simulation nodes"), influences, input.clip.name,
-                                     counted(input.clip.frame_count(), "frame", "frames"))});
+    const std::string influences =
+        fmt::format("{:.1f}", static_cast<double>(weights.node.size()) / static_cast<double>(weights.vertex_count()));
+    input.report.insert(
+        input.report.begin(),
+        {fmt::format("{}: {}, {}", input.name, counted(input.surface.mesh.vertices.size(), "vertex", "vertices"),
+                     counted(input.surface.mesh.triangles.size(), "triangle", "triangles")),
+         fmt::format("{}, {} influences per vertex; motion '{}', {}",
+                     counted(weights.node_count, "simulation node", "simulation nodes"), influences, input.clip.name,
+                     counted(input.clip.frame_count(), "frame", "frames"))});
     return input;
 }
 

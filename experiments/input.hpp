@@ -25,8 +25,9 @@ struct InputOptions {
     bool last_frames = false; ///< of a scene: the last `frames` one after the other, instead of evenly spread
     bool first_frame = false; ///< of a scene: the one at time 0 too
     std::uint64_t seed = 0;
-    std::string body; ///< of a scene; empty: all of them, or the first where one is asked for
-    bool partial = false; ///< of a character: bound what is modelled, and say what is missing; else what is not modelled is refused
+    std::string body;     ///< of a scene; empty: all of them, or the first where one is asked for
+    bool partial = false; ///< of a character: bound what is modelled, and say what is missing; else what is not
+                          ///< modelled is refused
 };
 
 /// A surface with the frames that deform it.
@@ -35,15 +36,17 @@ struct Input {
     DeformableSurface surface;
     std::vector<Vec3> nodes; ///< rest positions of the simulation nodes; empty where they have none, as joints
     Clip clip;
-    bool simulated = false; ///< by a scene
+    bool simulated = false;              ///< by a scene
     bool simulation_nodes_fixed = false; ///< the input brings its own, instead of as many as asked for
-    std::vector<std::string> report; ///< one line each: what was loaded, and what was changed or left out
-    std::vector<std::string> missing; ///< what the file deforms or draws and the surface or its motion lacks, by name; empty: it is whole
+    std::vector<std::string> report;     ///< one line each: what was loaded, and what was changed or left out
+    std::vector<std::string>
+        missing; ///< what the file deforms or draws and the surface or its motion lacks, by name; empty: it is whole
     WeightReport weights_read; ///< what normalising the file's weights changed, where a file gives them
 };
 
-/// Loads a shipped shape, a mesh (with scripted motion, or with weights and transforms), a skinned character, or a scene, which is
-/// simulated. Throws InputError, one line, for anything that cannot be used, options that do not apply included.
+/// Loads a shipped shape, a mesh (with scripted motion, or with weights and transforms), a skinned character, or a
+/// scene, which is simulated. Throws InputError, one line, for anything that cannot be used, options that do not apply
+/// included.
 Input load_input(const InputOptions& options);
 
 /// The same with every body of a scene as an input of its own.
@@ -56,8 +59,8 @@ struct Inputs {
 };
 Inputs load_inputs(const InputOptions& options);
 
-/// What every record of results on an input says of it, for RecordOutput::describe: whether it is partial, what is missing, and what
-/// normalising its weights changed.
+/// What every record of results on an input says of it, for RecordOutput::describe: whether it is partial, what is
+/// missing, and what normalising its weights changed.
 nlohmann::ordered_json fields_of(const Input& input);
 nlohmann::ordered_json fields_of(const Inputs& inputs);
 

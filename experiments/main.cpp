@@ -7,13 +7,13 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "cinch/surface.hpp"
 #include "exact/check_failed.hpp"
 #include "experiments/command_line.hpp"
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/or_leave.hpp"
 #include "experiments/report/provenance.hpp"
 #include "toolkit/deform/kernel/targets.hpp"
-#include "cinch/surface.hpp"
 
 namespace {
 
@@ -21,8 +21,8 @@ using namespace cinch;
 
 constexpr int refuted = 1, bad_input = 2, stopped = 130;
 
-/// The exit status of what runs, and one line on standard error where it throws: 1 for a verdict and nothing else, 2 for all that keeps a command from
-/// reaching one.
+/// The exit status of what runs, and one line on standard error where it throws: 1 for a verdict and nothing else, 2
+/// for all that keeps a command from reaching one.
 template <class Run> int status_of(const Run& run)
 {
     auto refuse = [](const std::string& why) {
@@ -43,8 +43,10 @@ template <class Run> int status_of(const Run& run)
     } catch (const InputError& error) {
         return refuse(error.what());
     } catch (const std::filesystem::filesystem_error& error) {
-        return refuse(fmt::format("{}: {}; check the name, the disk and the permissions", error.path1().string(), error.code().message()));
-    } catch (const std::system_error& error) { // thrown by the print functions when their buffer overflows into a full disk, for one
+        return refuse(fmt::format("{}: {}; check the name, the disk and the permissions", error.path1().string(),
+                                  error.code().message()));
+    } catch (const std::system_error&
+                 error) { // thrown by the print functions when their buffer overflows into a full disk, for one
         return refuse(fmt::format("the system refused: {}; is the disk full, or a limit reached?", error.what()));
     } catch (const std::bad_alloc&) {
         return refuse("out of memory; fewer --frames, or larger leaves (--leaf), take less");
@@ -157,7 +159,8 @@ int main(int argc, char** argv)
         return app.exit(success);
     } catch (const CLI::ParseError& error) {
         const bool of_command = argv[1][0] != '-'; // a known one, by now
-        fmt::print(stderr, "cinch: {} (see 'cinch {}--help')\n", error.what(), of_command ? std::string(argv[1]) + " " : "");
+        fmt::print(stderr, "cinch: {} (see 'cinch {}--help')\n", error.what(),
+                   of_command ? std::string(argv[1]) + " " : "");
         return bad_input;
     }
     const int status = status_of([&] { return run(app); });

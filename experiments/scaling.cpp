@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "cinch/surface.hpp"
 #include "experiments/input.hpp"
 #include "experiments/measure/baselines.hpp"
 #include "experiments/measure/race.hpp"
@@ -18,7 +19,6 @@
 #include "toolkit/bounds/bound_box.hpp"
 #include "toolkit/hierarchy/packed_bvh.hpp"
 #include "toolkit/hierarchy/spheres.hpp"
-#include "cinch/surface.hpp"
 
 namespace cinch {
 namespace {
@@ -28,9 +28,13 @@ struct Size {
     const char *shape, *paper; ///< and its name in the paper's Table 1
     std::size_t vertices;
 
-    double paper_us(const std::string& column) const { return paper_figure("Table 1", paper, column).value; } ///< on a 3.4 GHz Pentium 4
+    double paper_us(const std::string& column) const
+    {
+        return paper_figure("Table 1", paper, column).value;
+    } ///< on a 3.4 GHz Pentium 4
 };
-constexpr Size sizes[] = {{"brain-3500", "3.5K", 3500}, {"brain-30000", "30K", 30000}, {"brain-145000", "145K", 145000}};
+constexpr Size sizes[] = {
+    {"brain-3500", "3.5K", 3500}, {"brain-30000", "30K", 30000}, {"brain-145000", "145K", 145000}};
 
 // Names in the order of the table; "unproven" is the default method without its error terms.
 const std::vector<std::string> contestants = [] {
@@ -55,7 +59,8 @@ template <class T> struct Kernel {
     Rounding rounding;
     int passes;
 
-    Kernel(const Bvh& bvh, const DeformableSurface& surface, std::span<const AffineMap> frame, Method method, Rounding rounding_, int passes_)
+    Kernel(const Bvh& bvh, const DeformableSurface& surface, std::span<const AffineMap> frame, Method method,
+           Rounding rounding_, int passes_)
         : packed(pack<T>(bvh, surface, choose_kinds(bvh, surface, method))), rounding(rounding_), passes(passes_)
     {
         project(frame, packed.rest, 6, rounding, maps);
@@ -78,7 +83,8 @@ template <class T> Times measure(const Input& input, const ScalingOptions& optio
     std::map<std::string, Kernel<T>> kernels;
     for (const Method method : kernel_methods) {
         throw_if_interrupted();
-        kernels.try_emplace(std::string(name_of(method)), bvh, input.surface, frame, method, Rounding::proven, options.passes);
+        kernels.try_emplace(std::string(name_of(method)), bvh, input.surface, frame, method, Rounding::proven,
+                            options.passes);
     }
     kernels.try_emplace("unproven", bvh, input.surface, frame, Method::best, Rounding::plain, options.passes);
 
@@ -91,15 +97,21 @@ template <class T> Times measure(const Input& input, const ScalingOptions& optio
         else if (name == "optimal")
             calls.emplace_back([&] { optimal.bound(supports); });
         else if (name == "sphere")
-            calls.emplace_back([&] { bound_sphere(spheres.of(bvh.bvs[0], 0), spheres.place, frame, bvh.bvs[0].vertex_influences, Rounding::proven, axes_of(6), supports); });
+            calls.emplace_back([&] {
+                bound_sphere(spheres.of(bvh.bvs[0], 0), spheres.place, frame, bvh.bvs[0].vertex_influences,
+                             Rounding::proven, axes_of(6), supports);
+            });
         else if (name == "corners")
-            calls.emplace_back([&] { bound_box(bvh.rest(0), frame, Method::corners, Rounding::proven, axes_of(6), scratch, supports); });
+            calls.emplace_back([&] {
+                bound_box(bvh.rest(0), frame, Method::corners, Rounding::proven, axes_of(6), scratch, supports);
+            });
         else
             calls.emplace_back([&supports, &kernel = kernels.at(name)] { kernel.bound(supports); });
     }
     Kernel<T>& best = kernels.at("best");
     ProjectedMaps<T> projected;
-    calls.emplace_back([&] { project(std::span<const AffineMap>(frame), best.packed.rest, 6, Rounding::proven, projected); });
+    calls.emplace_back(
+        [&] { project(std::span<const AffineMap>(frame), best.packed.rest, 6, Rounding::proven, projected); });
     const std::vector<double> ns = race(calls, options.seconds);
     Times times;
     for (std::size_t i = 0; i < contestants.size(); ++i)
@@ -111,7 +123,10 @@ template <class T> Times measure(const Input& input, const ScalingOptions& optio
     return times;
 }
 
-std::string microseconds(double ns) { return ns < 1e5 ? fmt::format("{:.2f}", ns / 1e3) : grouped(static_cast<std::size_t>(ns / 1e3 + 0.5)); }
+std::string microseconds(double ns)
+{
+    return ns < 1e5 ? fmt::format("{:.2f}", ns / 1e3) : grouped(static_cast<std::size_t>(ns / 1e3 + 0.5));
+}
 
 std::vector<Figure> figures_of(const Times (&times)[3][3])
 {
@@ -128,7 +143,8 @@ std::vector<Figure> figures_of(const Times (&times)[3][3])
     figure("proven / unproven default, n = 509", proof, "{:.2f}", "<= 1.10", proof <= 1.1);
     for (std::size_t n = 0; n < 3; ++n) {
         const double invariance = times[2][n].ns.at("best") / times[0][n].ns.at("best");
-        figure(fmt::format("145K vertices / 3.5K, n = {}", node_counts[n]), invariance, "{:.2f}", "<= 1.1", invariance <= 1.1);
+        figure(fmt::format("145K vertices / 3.5K, n = {}", node_counts[n]), invariance, "{:.2f}", "<= 1.1",
+               invariance <= 1.1);
     }
     std::vector<double> size(std::begin(node_counts), std::end(node_counts)), ns;
     for (const Times& t : times[1])
@@ -140,19 +156,24 @@ std::vector<Figure> figures_of(const Times (&times)[3][3])
 }
 
 // Each size is measured in one frame.
-Completeness completeness_in_sizes(std::size_t done, std::size_t wanted) { return {done, wanted, done == wanted, done == wanted ? "" : interrupted_after(done, wanted, "sizes")}; }
+Completeness completeness_in_sizes(std::size_t done, std::size_t wanted)
+{
+    return {done, wanted, done == wanted, done == wanted ? "" : interrupted_after(done, wanted, "sizes")};
+}
 
 // Rows of what was measured, for people.
 void print_rows(const std::vector<nlohmann::ordered_json>& records)
 {
     std::vector<std::vector<std::string>> rows;
     for (const auto& r : records)
-        rows.push_back({grouped(r["vertices"].get<std::size_t>()), std::to_string(r["n"].get<std::size_t>()), r["method"], microseconds(r["ns_per_bound"])});
+        rows.push_back({grouped(r["vertices"].get<std::size_t>()), std::to_string(r["n"].get<std::size_t>()),
+                        r["method"], microseconds(r["ns_per_bound"])});
     fmt::print("{}", table({"vertices", "n", "method", "microseconds"}, rows));
     std::fflush(stdout);
 }
 
-// The same measurement on what the user names, in its last frame: with the paper's numbers of simulation nodes where these can be chosen.
+// The same measurement on what the user names, in its last frame: with the paper's numbers of simulation nodes where
+// these can be chosen.
 int scaling_of(const ScalingOptions& options, const Provenance& from, RecordOutput& output)
 {
     std::vector<nlohmann::ordered_json> records;
@@ -173,10 +194,18 @@ int scaling_of(const ScalingOptions& options, const Provenance& from, RecordOutp
                 what.nodes = node_counts[i];
                 input = or_leave([what] { return load_input(what); });
             }
-            const Times times = options.precision == Precision::float32 ? measure<float>(input, options) : measure<double>(input, options);
+            const Times times = options.precision == Precision::float32 ? measure<float>(input, options)
+                                                                        : measure<double>(input, options);
             for (const std::string& name : contestants)
-                records.push_back({{"experiment", "scaling"}, {"input", input.name}, {"method", name}, {"precision", name_of(options.precision)},
-                                   {"n", input.surface.weights.node_count}, {"vertices", input.surface.mesh.vertices.size()}, {"ns_per_bound", times.ns.at(name)}, {"frames_done", 1}, {"frames", 1}});
+                records.push_back({{"experiment", "scaling"},
+                                   {"input", input.name},
+                                   {"method", name},
+                                   {"precision", name_of(options.precision)},
+                                   {"n", input.surface.weights.node_count},
+                                   {"vertices", input.surface.mesh.vertices.size()},
+                                   {"ns_per_bound", times.ns.at(name)},
+                                   {"frames_done", 1},
+                                   {"frames", 1}});
         }
     } catch (const Interrupted&) { // sizes before it are kept
     }
@@ -188,7 +217,8 @@ int scaling_of(const ScalingOptions& options, const Provenance& from, RecordOutp
         print_note(completeness);
         for (const std::string& line : input.report)
             fmt::print("{}\n", line);
-        fmt::print("\nTime of one bound of the whole surface (six directions), {}{}\n\n", name_of(options.precision), partial_mark(input.missing));
+        fmt::print("\nTime of one bound of the whole surface (six directions), {}{}\n\n", name_of(options.precision),
+                   partial_mark(input.missing));
         print_rows(records);
         fmt::print("\n{}\n", describe(from));
         std::fflush(stdout);
@@ -223,11 +253,19 @@ int scaling(const ScalingOptions& options)
                 what.frames = 1;
                 what.seed = options.seed;
                 const Input input = or_leave([what] { return load_input(what); });
-                times[v][n] = options.precision == Precision::float32 ? measure<float>(input, options) : measure<double>(input, options);
+                times[v][n] = options.precision == Precision::float32 ? measure<float>(input, options)
+                                                                      : measure<double>(input, options);
                 for (const std::string& name : contestants)
-                    records.push_back({{"experiment", "scaling"}, {"method", name}, {"precision", name_of(options.precision)}, {"n", node_counts[n]},
-                                       {"vertices", sizes[v].vertices}, {"ns_per_bound", times[v][n].ns.at(name)}, {"frames_done", 1}, {"frames", 1},
-                                       {"paper_us", sizes[v].paper_us(name == "optimal" ? name : std::to_string(node_counts[n]))}});
+                    records.push_back(
+                        {{"experiment", "scaling"},
+                         {"method", name},
+                         {"precision", name_of(options.precision)},
+                         {"n", node_counts[n]},
+                         {"vertices", sizes[v].vertices},
+                         {"ns_per_bound", times[v][n].ns.at(name)},
+                         {"frames_done", 1},
+                         {"frames", 1},
+                         {"paper_us", sizes[v].paper_us(name == "optimal" ? name : std::to_string(node_counts[n]))}});
                 progress.done(3 * v + n + 1);
             }
     } catch (const Interrupted&) { // sizes before it are kept
@@ -235,7 +273,11 @@ int scaling(const ScalingOptions& options)
     const Completeness completeness = completeness_in_sizes(records.size() / contestants.size(), 9);
     if (completeness.complete)
         for (const Figure& f : figures_of(times))
-            records.push_back({{"experiment", "scaling"}, {"figure", f.what}, {"measured", f.measured}, {"target", f.target}, {"reached", f.reached}});
+            records.push_back({{"experiment", "scaling"},
+                               {"figure", f.what},
+                               {"measured", f.measured},
+                               {"target", f.target},
+                               {"reached", f.reached}});
     output.set(completeness);
     output.add_all(records);
     output.finish();
@@ -249,7 +291,8 @@ int scaling(const ScalingOptions& options)
     }
     if (options.output.records_only())
         return 0;
-    fmt::print("Time of one bound of the whole brain (six directions), microseconds, {}\n\n", name_of(options.precision));
+    fmt::print("Time of one bound of the whole brain (six directions), microseconds, {}\n\n",
+               name_of(options.precision));
     std::vector<std::vector<std::string>> rows;
     for (const std::string& name : contestants) {
         std::vector<std::string> row{name == "unproven" ? "best, unproven" : name};
@@ -274,7 +317,8 @@ int scaling(const ScalingOptions& options)
                "(Definition 1 of the paper); -axes: by centre and axes (its section 6). paper:\n"
                "Table 1, its Eq. 12 on a 3.4 GHz Pentium 4; its optimal AABB took 2,000, 17,200\n"
                "and 82,500. default: 'best', here '{}'. One core, all methods in turn.\n"
-               "Once per frame all transforms are projected: {} microseconds for 509.\n\n", times[1][2].best_kind, microseconds(times[1][2].project_ns));
+               "Once per frame all transforms are projected: {} microseconds for 509.\n\n",
+               times[1][2].best_kind, microseconds(times[1][2].project_ns));
     print(figures_of(times));
     fmt::print("\n{}\n", describe(from));
     return 0;

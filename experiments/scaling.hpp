@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "experiments/report/record_output.hpp"
 #include "cinch/refit.hpp"
+#include "experiments/report/record_output.hpp"
 
 namespace cinch {
 
@@ -13,13 +13,14 @@ struct ScalingOptions {
     int passes = 1;
     double seconds = 1; ///< of measuring per size
     std::uint64_t seed = 0;
-    std::string input; ///< measured instead of the brain: a scene's first body, a mesh or a character
+    std::string input;    ///< measured instead of the brain: a scene's first body, a mesh or a character
     bool partial = false; ///< of a character: what is modelled, see InputOptions
     OutputOptions output;
 };
 
-/// The paper's Table 1: time of one bound of the whole brain (six directions) for 3 numbers of vertices and 3 of simulation nodes, by
-/// every method, with the textbook's Eq. 12 and the optimal AABB in the same run. Returns the exit status.
+/// The paper's Table 1: time of one bound of the whole brain (six directions) for 3 numbers of vertices and 3 of
+/// simulation nodes, by every method, with the textbook's Eq. 12 and the optimal AABB in the same run. Returns the exit
+/// status.
 int scaling(const ScalingOptions& options);
 
 } // namespace cinch

@@ -8,7 +8,8 @@ namespace fs = std::filesystem;
 fs::path shipped_folder(const char* kind)
 {
     std::error_code error;
-    const fs::path installed = fs::read_symlink("/proc/self/exe", error).parent_path().parent_path() / "share/cinch" / kind;
+    const fs::path installed =
+        fs::read_symlink("/proc/self/exe", error).parent_path().parent_path() / "share/cinch" / kind;
     return !error && fs::is_directory(installed, error) ? installed : fs::path(CINCH_DATA) / kind;
 }
 

@@ -5,7 +5,8 @@
 
 namespace cinch {
 
-/// Folder of what comes with the program, "scenes" or "cases": beside an installed program, or in the source that it was built from.
+/// Folder of what comes with the program, "scenes" or "cases": beside an installed program, or in the source that it
+/// was built from.
 std::filesystem::path shipped_folder(const char* kind);
 
 } // namespace cinch

@@ -10,6 +10,7 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 
+#include "cinch/surface.hpp"
 #include "exact/verifier.hpp"
 #include "experiments/measure/race.hpp"
 #include "experiments/report/interrupt.hpp"
@@ -17,7 +18,6 @@
 #include "experiments/report/or_leave.hpp"
 #include "experiments/report/progress.hpp"
 #include "experiments/report/table.hpp"
-#include "cinch/surface.hpp"
 
 namespace cinch {
 namespace {
@@ -49,7 +49,8 @@ double radius(std::span<const double> supports)
     return 0.5 * std::hypot(supports[0] + supports[1], supports[2] + supports[3], supports[4] + supports[5]);
 }
 
-void add_frame(const Bvh& bvh, std::span<const double> truth, std::span<const double> supports, const exact::FrameVerdict* verdict, std::vector<LevelRatio>& levels)
+void add_frame(const Bvh& bvh, std::span<const double> truth, std::span<const double> supports,
+               const exact::FrameVerdict* verdict, std::vector<LevelRatio>& levels)
 {
     levels.resize(bvh.level.size() - 1);
     for (std::size_t l = 0; l < levels.size(); ++l) {
@@ -74,13 +75,15 @@ void add_frame(const Bvh& bvh, std::span<const double> truth, std::span<const do
 // What refits and verifies an input; owns or shares all that it reads.
 struct Prepared {
     Prepared(std::shared_ptr<const Input> shared, const TightnessOptions& options, bool attribute)
-        : input(std::move(shared)), bvh(build_bvh(input->surface, options.leaf)), vertices(bvh, input->surface, {Method::vertices, 6, Rounding::plain})
+        : input(std::move(shared)), bvh(build_bvh(input->surface, options.leaf)),
+          vertices(bvh, input->surface, {Method::vertices, 6, Rounding::plain})
     {
         if (attribute)
             verifier.emplace(input->surface, bvh, throw_if_interrupted);
         for (const Methods methods : options.methods) {
             throw_if_interrupted();
-            refits.emplace_back(bvh, input->surface, RefitOptions{methods, 6, Rounding::proven, options.precision, options.passes});
+            refits.emplace_back(bvh, input->surface,
+                                RefitOptions{methods, 6, Rounding::proven, options.precision, options.passes});
         }
     }
     std::shared_ptr<const Input> input;
@@ -90,8 +93,8 @@ struct Prepared {
     std::vector<Refitter> refits;
 };
 
-// Ratios of every level and method; with `attribute` also by the exact verifier what is lost where. Frame by frame, so that after an interrupt all
-// methods have the same ones.
+// Ratios of every level and method; with `attribute` also by the exact verifier what is lost where. Frame by frame, so
+// that after an interrupt all methods have the same ones.
 Run measure(const std::shared_ptr<const Input>& shared, const TightnessOptions& options, bool attribute, bool& violated)
 {
     const Input& input = *shared;
@@ -99,7 +102,8 @@ Run measure(const std::shared_ptr<const Input>& shared, const TightnessOptions& 
     Run run{input.clip.name, input.surface.weights.node_count, 0, frames, {}};
     Progress progress(fmt::format("{} nodes, '{}'", run.nodes, run.motion), options.methods.size() * frames);
     try {
-        const std::unique_ptr<Prepared> prepared = or_leave([=] { return std::make_unique<Prepared>(shared, options, attribute); });
+        const std::unique_ptr<Prepared> prepared =
+            or_leave([=] { return std::make_unique<Prepared>(shared, options, attribute); });
         const Bvh& bvh = prepared->bvh;
         std::vector<double> truth(bvh.bvs.size() * 6), supports(truth);
         for (std::size_t f = 0; f < frames; ++f) {
@@ -125,26 +129,40 @@ Run measure(const std::shared_ptr<const Input>& shared, const TightnessOptions& 
     return run;
 }
 
-nlohmann::ordered_json record(const Input& input, const Run& run, const std::string& method, std::size_t level, bool attributed)
+nlohmann::ordered_json record(const Input& input, const Run& run, const std::string& method, std::size_t level,
+                              bool attributed)
 {
     const LevelRatio& l = run.levels.at(method)[level];
-    auto share = [&](double x) { return l.measured ? nlohmann::ordered_json(x / static_cast<double>(l.measured)) : nlohmann::ordered_json(); };
-    nlohmann::ordered_json out{{"experiment", "tightness"}, {"input", input.name}, {"motion", run.motion}, {"method", method}, {"n", run.nodes}, {"level", level},
-                               {"bvs", l.bvs}, {"mean_ratio", share(l.sum)}, {"max_ratio", l.measured ? nlohmann::ordered_json(l.max) : nlohmann::ordered_json()}};
+    auto share = [&](double x) {
+        return l.measured ? nlohmann::ordered_json(x / static_cast<double>(l.measured)) : nlohmann::ordered_json();
+    };
+    nlohmann::ordered_json out{{"experiment", "tightness"},
+                               {"input", input.name},
+                               {"motion", run.motion},
+                               {"method", method},
+                               {"n", run.nodes},
+                               {"level", level},
+                               {"bvs", l.bvs},
+                               {"mean_ratio", share(l.sum)},
+                               {"max_ratio", l.measured ? nlohmann::ordered_json(l.max) : nlohmann::ordered_json()}};
     out.update({{"frames_done", run.frames_done}, {"frames", run.frames}, {"complete", run.is_complete()}});
     if (attributed)
-        out.update({{"box_loss", share(l.loss.box)}, {"interval_loss", share(l.loss.interval)}, {"method_loss", share(l.loss.corner)}});
+        out.update({{"box_loss", share(l.loss.box)},
+                    {"interval_loss", share(l.loss.interval)},
+                    {"method_loss", share(l.loss.corner)}});
     return out;
 }
 
 std::string frames_of(const Run& run)
 {
-    return run.is_complete() ? counted(run.frames, "frame", "frames") : interrupted_after(run.frames_done, run.frames, "frames");
+    return run.is_complete() ? counted(run.frames, "frame", "frames")
+                             : interrupted_after(run.frames_done, run.frames, "frames");
 }
 
 void print_levels(const Run& run, const std::vector<std::string>& names)
 {
-    fmt::print("motion '{}', {}, {}: mean ratio by level\n\n", run.motion, counted(run.nodes, "simulation node", "simulation nodes"), frames_of(run));
+    fmt::print("motion '{}', {}, {}: mean ratio by level\n\n", run.motion,
+               counted(run.nodes, "simulation node", "simulation nodes"), frames_of(run));
     std::vector<std::string> header{"level", "BVs"};
     header.insert(header.end(), names.begin(), names.end());
     std::vector<std::vector<std::string>> means, greatest;
@@ -163,10 +181,14 @@ void print_levels(const Run& run, const std::vector<std::string>& names)
     const auto& last = run.levels.at(names.back());
     std::vector<std::vector<std::string>> rows;
     for (std::size_t l = 0; l < last.size(); ++l) {
-        auto share = [&](double x) { return last[l].measured ? fmt::format("{:.3f}", x / static_cast<double>(last[l].measured)) : "-"; };
-        rows.push_back({std::to_string(l), share(last[l].loss.box), share(last[l].loss.interval), share(last[l].loss.corner)});
+        auto share = [&](double x) {
+            return last[l].measured ? fmt::format("{:.3f}", x / static_cast<double>(last[l].measured)) : "-";
+        };
+        rows.push_back(
+            {std::to_string(l), share(last[l].loss.box), share(last[l].loss.interval), share(last[l].loss.corner)});
     }
-    fmt::print("what '{}' gives away, per direction, as a share of the true radius{}\n\n{}\n", names.back(), part, table({"level", "box", "interval", "method"}, rows));
+    fmt::print("what '{}' gives away, per direction, as a share of the true radius{}\n\n{}\n", names.back(), part,
+               table({"level", "box", "interval", "method"}, rows));
 }
 
 void add_figures(const Run& run, std::vector<Figure>& figures)
@@ -178,12 +200,15 @@ void add_figures(const Run& run, std::vector<Figure>& figures)
     for (const LevelRatio& level : best->second)
         worst = std::max(worst, level.mean());
     const double target = run.motion == "strong" ? 1.30 : 1.15, root = best->second[0].mean();
-    figures.push_back({fmt::format("'{}': best, mean ratio of its worst level", run.motion), fmt::format("{:.3f}", worst), fmt::format("<= {:.2f}", target), worst <= target});
+    figures.push_back({fmt::format("'{}': best, mean ratio of its worst level", run.motion),
+                       fmt::format("{:.3f}", worst), fmt::format("<= {:.2f}", target), worst <= target});
     if (run.motion == "strong")
-        figures.push_back({"'strong': best, mean ratio of the root", fmt::format("{:.3f}", root), "<= 1.20", root <= 1.2});
+        figures.push_back(
+            {"'strong': best, mean ratio of the root", fmt::format("{:.3f}", root), "<= 1.20", root <= 1.2});
     if (const auto sphere = run.levels.find("sphere"); sphere != run.levels.end() && run.motion == "strong") {
         const double times = sphere->second[0].mean() / root, most = sphere->second[0].max / root;
-        figures.push_back({"'strong': sphere over best at the root, mean", fmt::format("{:.1f}", times), ">= 50", times >= 50});
+        figures.push_back(
+            {"'strong': sphere over best at the root, mean", fmt::format("{:.1f}", times), ">= 50", times >= 50});
         figures.push_back({"'strong': sphere at most over best", fmt::format("{:.1f}", most), "-", true});
     }
 }
@@ -212,7 +237,10 @@ struct Measured {
             }
         Completeness out{done, wanted * frames, whole == wanted, ""};
         if (!out.complete)
-            out.note = interrupted_after(done, wanted * frames, fmt::format("frames ({} of {})", whole, counted(wanted, "motion or number of nodes", "motions and numbers of nodes")));
+            out.note = interrupted_after(
+                done, wanted * frames,
+                fmt::format("frames ({} of {})", whole,
+                            counted(wanted, "motion or number of nodes", "motions and numbers of nodes")));
         return out;
     }
 };
@@ -240,13 +268,14 @@ void measure_all(const TightnessOptions& options, Measured& measured)
     }
 }
 
-void print_tables(const Measured& measured, const std::vector<Figure>& figures, const Completeness& completeness, const Input& first, const TightnessOptions& options, const Provenance& from)
+void print_tables(const Measured& measured, const std::vector<Figure>& figures, const Completeness& completeness,
+                  const Input& first, const TightnessOptions& options, const Provenance& from)
 {
     print_note(completeness);
     for (const std::string& line : first.report)
         fmt::print("{}\n", line);
-    fmt::print("bounds in {}, AABBs, at most {} per leaf; radius: half diagonal{}\n\n", name_of(options.precision), counted(options.leaf, "triangle", "triangles"),
-               partial_mark(first.missing));
+    fmt::print("bounds in {}, AABBs, at most {} per leaf; radius: half diagonal{}\n\n", name_of(options.precision),
+               counted(options.leaf, "triangle", "triangles"), partial_mark(first.missing));
     for (const Run& run : measured.full)
         print_levels(run, measured.names);
     if (const std::vector<Run>& sweep = measured.sweep; !sweep.empty()) {
@@ -260,10 +289,12 @@ void print_tables(const Measured& measured, const std::vector<Figure>& figures, 
                 row.push_back(fmt::format("{:.3f}", run.levels.at(name)[0].mean()));
             rows.push_back(row);
         }
-        const std::string part = sweep.size() < measured.nodes.size() ? ", " + interrupted_after(sweep.size(), measured.nodes.size(), "rows")
-                                 : sweep.back().is_complete()       ? ""
-                                                                    : ", the last row " + frames_of(sweep.back());
-        fmt::print("motion '{}': mean ratio of the root against simulation nodes{}\n\n{}\n", measured.motions[0], part, table(header, rows));
+        const std::string part = sweep.size() < measured.nodes.size()
+                                     ? ", " + interrupted_after(sweep.size(), measured.nodes.size(), "rows")
+                                 : sweep.back().is_complete() ? ""
+                                                              : ", the last row " + frames_of(sweep.back());
+        fmt::print("motion '{}': mean ratio of the root against simulation nodes{}\n\n{}\n", measured.motions[0], part,
+                   table(header, rows));
     }
     fmt::print("box: extrema at the vertices' actual weights; interval: weight intervals; method:\n"
                "all else, negative where the method knows more of the weights than intervals do.\n"
@@ -290,7 +321,8 @@ int tightness(const TightnessOptions& given)
     output.describe(fields_of(first));
     const bool scripted = !first.simulation_nodes_fixed;
     if (!options.nodes.empty() && !scripted)
-        throw InputError("--sweep needs a shape or a mesh without --weights; this input brings its own simulation nodes");
+        throw InputError(
+            "--sweep needs a shape or a mesh without --weights; this input brings its own simulation nodes");
     std::vector<std::string> motions{options.input.motion};
     if (scripted && !first.simulated && options.input.motion.empty())
         motions = {"strong", "mild"};
@@ -315,13 +347,20 @@ int tightness(const TightnessOptions& given)
     std::vector<Figure> figures;
     for (const Run& run : measured.full)
         add_figures(run, figures);
-    if (const auto best = std::find(names.begin(), names.end(), "best"); best != names.end() && completeness.complete && measured.sweep.size() > 1) {
+    if (const auto best = std::find(names.begin(), names.end(), "best");
+        best != names.end() && completeness.complete && measured.sweep.size() > 1) {
         const std::vector<Run>& sweep = measured.sweep;
         const double few = sweep.front().levels.at("best")[0].mean(), many = sweep.back().levels.at("best")[0].mean();
-        figures.push_back({fmt::format("root ratio of best, n = {} / n = {}", sweep.back().nodes, sweep.front().nodes), fmt::format("{:.3f}", many / few), "< 1", many < few});
+        figures.push_back({fmt::format("root ratio of best, n = {} / n = {}", sweep.back().nodes, sweep.front().nodes),
+                           fmt::format("{:.3f}", many / few), "< 1", many < few});
     }
     for (const Figure& f : figures)
-        records.push_back({{"experiment", "tightness"}, {"input", first.name}, {"figure", f.what}, {"measured", f.measured}, {"target", f.target}, {"reached", f.reached}});
+        records.push_back({{"experiment", "tightness"},
+                           {"input", first.name},
+                           {"figure", f.what},
+                           {"measured", f.measured},
+                           {"target", f.target},
+                           {"reached", f.reached}});
     output.set(completeness);
     output.add_all(records);
     output.finish();

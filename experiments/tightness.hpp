@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "cinch/refit.hpp"
 #include "experiments/input.hpp"
 #include "experiments/report/record_output.hpp"
-#include "cinch/refit.hpp"
 
 namespace cinch {
 
 struct TightnessOptions {
     InputOptions input;
     std::vector<Methods> methods; ///< empty: sphere, eq12, limited, local, support, linear, best
-    std::vector<std::size_t> nodes; ///< numbers of simulation nodes for the root's ratio; empty: 8 to 512 if the input lets us choose
+    std::vector<std::size_t>
+        nodes; ///< numbers of simulation nodes for the root's ratio; empty: 8 to 512 if the input lets us choose
     Precision precision = Precision::float32;
     int passes = 1;
     std::size_t leaf = 1;
@@ -18,8 +19,9 @@ struct TightnessOptions {
     OutputOptions output;
 };
 
-/// The paper's Fig. 5: radius of the bound over true radius, mean and greatest over frames, by BVH level and method, with exact
-/// attribution of what is lost; and the root's ratio against the number of simulation nodes. Returns the exit status.
+/// The paper's Fig. 5: radius of the bound over true radius, mean and greatest over frames, by BVH level and method,
+/// with exact attribution of what is lost; and the root's ratio against the number of simulation nodes. Returns the
+/// exit status.
 int tightness(const TightnessOptions& options);
 
 } // namespace cinch

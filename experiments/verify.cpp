@@ -12,6 +12,8 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 
+#include "cinch/refit.hpp"
+#include "cinch/surface.hpp"
 #include "exact/certificate.hpp"
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/line_file.hpp"
@@ -22,14 +24,13 @@
 #include "experiments/verify_report.hpp"
 #include "toolkit/bounds/rounding.hpp"
 #include "toolkit/deform/dyadic.hpp"
-#include "cinch/refit.hpp"
-#include "cinch/surface.hpp"
 
 namespace cinch {
 
 void damage(Bvh& bvh, Sabotage sabotage)
 {
-    for (std::size_t i = 0; i < bvh.node.size(); ++i) { // the first interval with room in it, so one of the root's if there is one
+    for (std::size_t i = 0; i < bvh.node.size();
+         ++i) { // the first interval with room in it, so one of the root's if there is one
         if (!(bvh.l[i] < bvh.h[i]))
             continue;
         if (sabotage == Sabotage::swap_interval)
@@ -42,7 +43,8 @@ void damage(Bvh& bvh, Sabotage sabotage)
 
 namespace {
 
-// limited ≤ eq12 ≤ convex on the doubles of every frame, and where the method is the default, that it is not clearly looser than eq12.
+// limited ≤ eq12 ≤ convex on the doubles of every frame, and where the method is the default, that it is not clearly
+// looser than eq12.
 class Ladder {
 public:
     Ladder(const Bvh& bvh, const DeformableSurface& surface, const RefitOptions& options)
@@ -75,7 +77,8 @@ private:
     {
         for (std::size_t i = 0; i < supports.size(); ++i) {
             const double width = eq12[i] + eq12[i ^ 1], excess = supports[i] - eq12[i]; // NaN where both are infinite
-            const double carried = 8 * unit_roundoff * std::abs(eq12[i]); // what moving both by the body's origin may set apart
+            const double carried =
+                8 * unit_roundoff * std::abs(eq12[i]); // what moving both by the body's origin may set apart
             totals.above += excess > 0;
             totals.clearly += excess > 0.01 * width + carried;
         }
@@ -87,15 +90,20 @@ private:
     std::vector<Refitter> rungs_;
 };
 
-// In the last frame verified: the exact attribution of the root's bounds, and VIPR files of the first BV of every level.
-void explain_last_frame(const Input& input, const Bvh& bvh, const VerifyOptions& options, std::size_t frame, std::span<const double> supports, VerifyTotals& totals)
+// In the last frame verified: the exact attribution of the root's bounds, and VIPR files of the first BV of every
+// level.
+void explain_last_frame(const Input& input, const Bvh& bvh, const VerifyOptions& options, std::size_t frame,
+                        std::span<const double> supports, VerifyTotals& totals)
 {
     if (totals.levels.empty() || options.sabotage != Sabotage::none || options.rest_shape == RestShape::obb)
         return; // damaged data need not have a proof
     const Clip::Frame maps = input.clip.frame(frame);
     auto place = [&](std::size_t bv, int direction) {
-        return exact::OneBound{input.surface, bvh, maps, options.methods, options.kdop, bv, direction,
-                               supports[bv * static_cast<std::size_t>(options.kdop) + static_cast<std::size_t>(direction)]};
+        return exact::OneBound{
+            input.surface, bvh,
+            maps,          options.methods,
+            options.kdop,  bv,
+            direction,     supports[bv * static_cast<std::size_t>(options.kdop) + static_cast<std::size_t>(direction)]};
     };
     for (int d = 0; (options.output.json || !options.output.report.empty()) && d < options.kdop; ++d) {
         throw_if_interrupted();
@@ -117,7 +125,8 @@ void explain_last_frame(const Input& input, const Bvh& bvh, const VerifyOptions&
 RefitOptions refit_options(const VerifyOptions& options)
 {
     const Rounding rounding = options.sabotage == Sabotage::no_rounding ? Rounding::plain : Rounding::proven;
-    return {options.methods, options.kdop, rounding, options.precision, options.passes, options.rest_shape, options.remember};
+    return {options.methods, options.kdop,       rounding,        options.precision,
+            options.passes,  options.rest_shape, options.remember};
 }
 
 Bvh damaged_bvh(const DeformableSurface& surface, const VerifyOptions& options)
@@ -130,7 +139,8 @@ Bvh damaged_bvh(const DeformableSurface& surface, const VerifyOptions& options)
 // What refits and verifies a body of the inputs, which it shares.
 struct Prepared {
     Prepared(std::shared_ptr<const Inputs> shared, const Input& input, const VerifyOptions& options)
-        : inputs(std::move(shared)), bvh(damaged_bvh(input.surface, options)), verifier(input.surface, bvh, throw_if_interrupted), refit(bvh, input.surface, refit_options(options)),
+        : inputs(std::move(shared)), bvh(damaged_bvh(input.surface, options)),
+          verifier(input.surface, bvh, throw_if_interrupted), refit(bvh, input.surface, refit_options(options)),
           ladder(bvh, input.surface, refit_options(options))
     {
     }
@@ -141,10 +151,13 @@ struct Prepared {
     Ladder ladder;
 };
 
-// Refits and proves every BV of one body in every frame, on top of what `totals` has. An interrupt ends it between two frames: `totals` has whole ones.
-void verify_body(const std::shared_ptr<const Inputs>& inputs, const Input& input, const VerifyOptions& options, LineFile* certificate, VerifyTotals& totals)
+// Refits and proves every BV of one body in every frame, on top of what `totals` has. An interrupt ends it between two
+// frames: `totals` has whole ones.
+void verify_body(const std::shared_ptr<const Inputs>& inputs, const Input& input, const VerifyOptions& options,
+                 LineFile* certificate, VerifyTotals& totals)
 {
-    const std::unique_ptr<Prepared> prepared = or_leave([inputs, &input, options] { return std::make_unique<Prepared>(inputs, input, options); });
+    const std::unique_ptr<Prepared> prepared =
+        or_leave([inputs, &input, options] { return std::make_unique<Prepared>(inputs, input, options); });
     const Bvh& bvh = prepared->bvh;
     const exact::Verifier& verifier = prepared->verifier;
     Refitter& refit = prepared->refit;
@@ -173,7 +186,8 @@ void verify_body(const std::shared_ptr<const Inputs>& inputs, const Input& input
         throw_if_interrupted();
         const Clip::Frame maps = input.clip.frame(f);
         const std::size_t unbounded = refit(maps, supports).unbounded_nodes;
-        const exact::FrameVerdict verdict = verifier.check(maps, options.methods, options.kdop, supports, options.rest_shape);
+        const exact::FrameVerdict verdict =
+            verifier.check(maps, options.methods, options.kdop, supports, options.rest_shape);
         std::vector<VolumeTotals> volumes = totals.volumes; // kept with their frame
         if (options.volume) {
             volumes.resize(std::max(volumes.size(), bvh.level.size() - 1));
@@ -189,7 +203,8 @@ void verify_body(const std::shared_ptr<const Inputs>& inputs, const Input& input
         totals.unbounded_nodes += unbounded;
         totals.volumes = std::move(volumes);
         totals.ladder = compared;
-        totals.infinite += static_cast<std::size_t>(std::count_if(supports.begin(), supports.end(), [](double s) { return std::isinf(s); }));
+        totals.infinite += static_cast<std::size_t>(
+            std::count_if(supports.begin(), supports.end(), [](double s) { return std::isinf(s); }));
         progress.done(totals.frames);
     }
     if (proof && totals.frames - before == input.clip.frame_count())
@@ -209,7 +224,8 @@ int verify(const VerifyOptions& given)
     const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
     if (!options.vipr.empty() && (!options.methods.within(box_methods) || options.rest_shape == RestShape::obb))
-        throw InputError("--vipr needs methods that bound over weights and the BV's own box: convex, corners, eq12, limited");
+        throw InputError(
+            "--vipr needs methods that bound over weights and the BV's own box: convex, corners, eq12, limited");
     const Provenance from = provenance(threads, options.input.seed);
     RecordOutput output(options.output, from);
     std::optional<LineFile> certificate;
@@ -258,7 +274,8 @@ int verify(const VerifyOptions& given)
         return 1;
     if (!completeness.complete) {
         std::fflush(stdout);
-        fmt::print(stderr, "cinch: {}{}\n", completeness.note, certificate ? "; " + options.certificate + " is not written: it would not prove the rest" : "");
+        fmt::print(stderr, "cinch: {}{}\n", completeness.note,
+                   certificate ? "; " + options.certificate + " is not written: it would not prove the rest" : "");
         return 130;
     }
     if (interrupted()) {

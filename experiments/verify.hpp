@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "cinch/refit.hpp"
 #include "experiments/input.hpp"
 #include "experiments/report/record_output.hpp"
-#include "cinch/refit.hpp"
 
 namespace cinch {
 
@@ -14,7 +14,8 @@ void damage(Bvh& bvh, Sabotage sabotage);
 /// Whose bounds are proven.
 enum class VerifiedUpdate {
     refit, ///< all BVs by the methods
-    lazy,  ///< LazyRefit's at the end of a collision query: those on its cut and below by the methods, above it merged, leaves from vertices
+    lazy,  ///< LazyRefit's at the end of a collision query: those on its cut and below by the methods, above it merged,
+           ///< leaves from vertices
     full,  ///< the same with all leaves from their vertices, and all else merged
     front, ///< the same with every BV that the query wants by the methods
 };
@@ -38,7 +39,8 @@ struct VerifyOptions {
     Sabotage sabotage = Sabotage::none;
 };
 
-/// Updates BVs in every frame and proves every bound. Returns the exit status: 0 all proven, 1 a check failed, 130 interrupted.
+/// Updates BVs in every frame and proves every bound. Returns the exit status: 0 all proven, 1 a check failed, 130
+/// interrupted.
 int verify(const VerifyOptions& options);
 
 } // namespace cinch

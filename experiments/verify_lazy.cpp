@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <limits>
 
+#include "cinch/collider.hpp"
+#include "cinch/surface.hpp"
 #include "exact/absolute.hpp"
 #include "exact/check_failed.hpp"
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/progress.hpp"
-#include "cinch/collider.hpp"
-#include "cinch/surface.hpp"
 #include "toolkit/collide/collider_parts.hpp"
 #include "toolkit/hierarchy/lazy_refit.hpp"
 
@@ -19,8 +19,10 @@ namespace {
 void require_fitting(const Inputs& inputs, const VerifyOptions& options)
 {
     if (inputs.bodies.size() < 2)
-        throw InputError("--update other than refit is driven by a query between bodies: it needs a scene of at least two (santa-ring-1, fishes)");
-    if (!options.certificate.empty() || !options.vipr.empty() || options.volume || options.remember || options.passes != 1)
+        throw InputError("--update other than refit is driven by a query between bodies: it needs a scene of at least "
+                         "two (santa-ring-1, fishes)");
+    if (!options.certificate.empty() || !options.vipr.empty() || options.volume || options.remember ||
+        options.passes != 1)
         throw InputError("--certificate, --vipr, --volume, --remember and --passes go with --update refit only");
     if (options.leaf > 16)
         throw InputError("--update other than refit needs leaves of at most 16 triangles");
@@ -44,7 +46,10 @@ LazyOptions lazy_options(const VerifyOptions& options)
 // One body's BVs in a frame.
 class Proof {
 public:
-    Proof(const Input& input, Bvh&& bvh) : bvh_(std::move(bvh)), verifier_(input.surface, bvh_, throw_if_interrupted), current_(bvh_.bvs.size()) {}
+    Proof(const Input& input, Bvh&& bvh)
+        : bvh_(std::move(bvh)), verifier_(input.surface, bvh_, throw_if_interrupted), current_(bvh_.bvs.size())
+    {
+    }
 
     const Bvh& bvh() const { return bvh_; }
 
@@ -57,7 +62,8 @@ public:
     }
 
     // After the query.
-    void check(const LazyRefit& tree, std::span<const AffineMap> maps, const VerifyOptions& options, VerifyTotals& totals, LazyTotals& lazy)
+    void check(const LazyRefit& tree, std::span<const AffineMap> maps, const VerifyOptions& options,
+               VerifyTotals& totals, LazyTotals& lazy)
     {
         const auto k = static_cast<std::size_t>(options.kdop);
         std::vector<double> supports(bvh_.bvs.size() * k, std::numeric_limits<double>::infinity());
@@ -73,8 +79,10 @@ public:
                 relative[d] = tree.dop(bv)[d % 2 * dop_side(options.kdop) + d / 2];
             exact::absolute_supports(options.kdop, relative, tree.origin(), std::span(supports).subspan(bv * k, k));
         }
-        const std::size_t deformed = tree.counts().leaves; // after a full update once more where their vertices are wanted too
-        if (tree.counts().merged != merged_ || (tree.fully_refitted() ? deformed < leaves : deformed != leaves) || tree.counts().bounds != current - merged_ - leaves)
+        const std::size_t deformed =
+            tree.counts().leaves; // after a full update once more where their vertices are wanted too
+        if (tree.counts().merged != merged_ || (tree.fully_refitted() ? deformed < leaves : deformed != leaves) ||
+            tree.counts().bounds != current - merged_ - leaves)
             throw CheckFailed("the lazy update's own counts differ from the BVs that are current");
         lazy.merged += merged_;
         lazy.from_vertices += leaves;
@@ -85,7 +93,9 @@ public:
         if (supports.empty())
             supports.assign(bvh_.bvs.size() * k, std::numeric_limits<double>::infinity());
         add(bvh_, verifier_.check(maps, Method::vertices, options.kdop, supports), options.kdop, current_, totals);
-        totals.infinite += static_cast<std::size_t>(std::count_if(supports.begin(), supports.end(), [](double s) { return std::isinf(s); })) - k * (bvh_.bvs.size() - current);
+        totals.infinite += static_cast<std::size_t>(std::count_if(supports.begin(), supports.end(),
+                                                                  [](double s) { return std::isinf(s); })) -
+                           k * (bvh_.bvs.size() - current);
     }
 
 private:
@@ -105,7 +115,8 @@ void verify_lazy(const Inputs& inputs, const VerifyOptions& options, VerifyTotal
     Collider collider(query_options);
     std::vector<std::unique_ptr<Proof>> proofs;
     for (const Input& body : inputs.bodies) {
-        Bvh bvh = options.leaf == 1 ? build_bvh(body.surface, 1) : build_bvh(body.surface, ClusterSize{options.leaf, query_options.lanes});
+        Bvh bvh = options.leaf == 1 ? build_bvh(body.surface, 1)
+                                    : build_bvh(body.surface, ClusterSize{options.leaf, query_options.lanes});
         damage(bvh, options.sabotage);
         proofs.push_back(std::make_unique<Proof>(body, std::move(bvh)));
         collider.add(proofs.back()->bvh(), body.surface);

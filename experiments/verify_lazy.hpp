@@ -13,8 +13,9 @@ struct LazyTotals {
     std::size_t pairs = 0;                                     ///< of triangles that intersect, over all frames
 };
 
-/// The lazy update of all bodies of a scene, and a query of their intersecting triangles, frame by frame; then proves every BV that is
-/// current: what the query read. Throws InputError for options that do not go with it, and Interrupted between frames, those before it added.
+/// The lazy update of all bodies of a scene, and a query of their intersecting triangles, frame by frame; then proves
+/// every BV that is current: what the query read. Throws InputError for options that do not go with it, and Interrupted
+/// between frames, those before it added.
 void verify_lazy(const Inputs& inputs, const VerifyOptions& options, VerifyTotals& totals, LazyTotals& lazy);
 
 } // namespace cinch

@@ -10,11 +10,14 @@ namespace cinch {
 
 void print_table(const Inputs& input, const VerifyOptions& options, const VerifyTotals& totals, const Provenance& from);
 /// By level, then violations, the exact attribution of the root, and totals.
-std::vector<nlohmann::ordered_json> records_of(const Inputs& input, const VerifyOptions& options, const VerifyTotals& totals);
+std::vector<nlohmann::ordered_json> records_of(const Inputs& input, const VerifyOptions& options,
+                                               const VerifyTotals& totals);
 /// The lines that both kinds of `verify` print of violations.
 void print_examples(const VerifyTotals& totals, int kdop);
 
-void print_lazy_table(const Inputs& input, const VerifyOptions& options, const VerifyTotals& totals, const LazyTotals& lazy, const Provenance& from);
-std::vector<nlohmann::ordered_json> lazy_records_of(const Inputs& input, const VerifyOptions& options, const VerifyTotals& totals, const LazyTotals& lazy);
+void print_lazy_table(const Inputs& input, const VerifyOptions& options, const VerifyTotals& totals,
+                      const LazyTotals& lazy, const Provenance& from);
+std::vector<nlohmann::ordered_json> lazy_records_of(const Inputs& input, const VerifyOptions& options,
+                                                    const VerifyTotals& totals, const LazyTotals& lazy);
 
 } // namespace cinch

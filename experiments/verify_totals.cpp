@@ -18,7 +18,8 @@ void add_levels(const Bvh& bvh, VerifyTotals& totals)
     }
 }
 
-void add(const Bvh& bvh, const exact::FrameVerdict& frame, int kdop, std::span<const char> counted, VerifyTotals& totals)
+void add(const Bvh& bvh, const exact::FrameVerdict& frame, int kdop, std::span<const char> counted,
+         VerifyTotals& totals)
 {
     const auto k = static_cast<std::size_t>(kdop);
     for (std::size_t i = 0; i + 1 < bvh.level.size(); ++i) { // another body's tree may have more
@@ -27,7 +28,8 @@ void add(const Bvh& bvh, const exact::FrameVerdict& frame, int kdop, std::span<c
             if (!counted.empty() && !counted[bv])
                 continue;
             const auto masks = std::span(frame.failed).subspan(bv * k, k);
-            const auto violated = static_cast<std::size_t>(std::count_if(masks.begin(), masks.end(), [](auto mask) { return mask != 0; }));
+            const auto violated = static_cast<std::size_t>(
+                std::count_if(masks.begin(), masks.end(), [](auto mask) { return mask != 0; }));
             level.violated += violated;
             level.proven += k - violated;
             const exact::BvReport& report = frame.bvs[bv];
@@ -46,7 +48,8 @@ void add(const Bvh& bvh, const exact::FrameVerdict& frame, int kdop, std::span<c
     for (const exact::Violation& violation : frame.examples) {
         if (totals.examples.size() >= 10)
             break;
-        const auto above = std::upper_bound(bvh.level.begin(), bvh.level.end(), static_cast<std::uint32_t>(violation.bv));
+        const auto above =
+            std::upper_bound(bvh.level.begin(), bvh.level.end(), static_cast<std::uint32_t>(violation.bv));
         totals.examples.push_back({totals.frames, static_cast<std::size_t>(above - bvh.level.begin() - 1), violation});
     }
     totals.decided_by_filter += frame.decided_by_filter;

@@ -7,11 +7,11 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 
+#include "cinch/surface.hpp"
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/number.hpp"
 #include "experiments/report/record_output.hpp"
 #include "experiments/report/whole_file.hpp"
-#include "cinch/surface.hpp"
 
 namespace cinch {
 
@@ -37,19 +37,27 @@ int view(const ViewOptions& options)
         for (const ViewRequest& request : wanted) {
             throw_if_interrupted();
             Json view = make_view(request);
-            const std::size_t done = view["bounds"].size(), methods = request.methods.size(), frames = view["time_s"].size();
+            const std::size_t done = view["bounds"].size(), methods = request.methods.size(),
+                              frames = view["time_s"].size();
             if (done < methods)
-                view["text"] = fmt::format("{} ({})", view["text"].get<std::string>(), interrupted_after(done, methods, "methods"));
+                view["text"] = fmt::format("{} ({})", view["text"].get<std::string>(),
+                                           interrupted_after(done, methods, "methods"));
             whole += done == methods;
             output.describe({{"partial", !view["missing"].empty()}, {"missing", view["missing"]}});
-            output.add({{"experiment", "view"}, {"scene", view["scene"]}, {"frames_done", frames}, {"frames", frames}, {"complete", done == methods}, {"view", view}});
+            output.add({{"experiment", "view"},
+                        {"scene", view["scene"]},
+                        {"frames_done", frames},
+                        {"frames", frames},
+                        {"complete", done == methods},
+                        {"view", view}});
             views.push_back(std::move(view));
         }
     } catch (const Interrupted&) { // the views before are kept
         if (views.empty())
             throw;
     }
-    const std::string note = whole == wanted.size() ? "" : interrupted_after(whole, wanted.size(), wanted.size() == 1 ? "view" : "views");
+    const std::string note =
+        whole == wanted.size() ? "" : interrupted_after(whole, wanted.size(), wanted.size() == 1 ? "view" : "views");
     if (!note.empty()) // those that came before had no way to know
         output.add({{"experiment", "view"}, {"views_done", whole}, {"views", wanted.size()}, {"complete", false}});
     output.finish();
@@ -60,9 +68,11 @@ int view(const ViewOptions& options)
         if (!note.empty())
             fmt::print(options.json ? stderr : stdout, "{}:\n", note);
         for (const auto& made : views)
-            fmt::print(options.json ? stderr : stdout, "{}: {}, {}\n", made["scene"].get<std::string>(), counted(made["time_s"].size(), "frame", "frames"),
+            fmt::print(options.json ? stderr : stdout, "{}: {}, {}\n", made["scene"].get<std::string>(),
+                       counted(made["time_s"].size(), "frame", "frames"),
                        counted(made["bounds"].size(), "method", "methods"));
-        fmt::print(options.json ? stderr : stdout, "{}: {:.1f} MB\n", options.report, static_cast<double>(page.size()) / 1e6);
+        fmt::print(options.json ? stderr : stdout, "{}: {:.1f} MB\n", options.report,
+                   static_cast<double>(page.size()) / 1e6);
         if (!has_three())
             fmt::print(stderr, "cinch: built without three.js, the page says how to get it\n");
     }

@@ -10,13 +10,14 @@
 
 namespace cinch {
 
-void add_volumes(const DeformableSurface& surface, const Bvh& bvh, std::span<const AffineMap> maps, int kdop, std::span<const double> supports,
-                 std::vector<VolumeTotals>& totals)
+void add_volumes(const DeformableSurface& surface, const Bvh& bvh, std::span<const AffineMap> maps, int kdop,
+                 std::span<const double> supports, std::vector<VolumeTotals>& totals)
 {
     constexpr std::size_t most = 16;
     const auto k = static_cast<std::size_t>(kdop);
     for (std::size_t level = 0; level < totals.size(); ++level) {
-        const std::size_t first = bvh.level[level], count = bvh.level[level + 1] - first, sample = std::min(count, most);
+        const std::size_t first = bvh.level[level], count = bvh.level[level + 1] - first,
+                          sample = std::min(count, most);
         std::vector<exact::Polytope> bound(sample), truth(sample);
         tbb::parallel_for(std::size_t{0}, sample, [&](std::size_t i) {
             const std::size_t bv = first + i * count / sample;

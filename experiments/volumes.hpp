@@ -18,7 +18,7 @@ struct VolumeTotals {
 };
 
 /// Adds one frame. `totals` has one entry per level.
-void add_volumes(const DeformableSurface& surface, const Bvh& bvh, std::span<const AffineMap> maps, int kdop, std::span<const double> supports,
-                 std::vector<VolumeTotals>& totals);
+void add_volumes(const DeformableSurface& surface, const Bvh& bvh, std::span<const AffineMap> maps, int kdop,
+                 std::span<const double> supports, std::vector<VolumeTotals>& totals);
 
 } // namespace cinch

@@ -77,7 +77,8 @@ static Run run(const std::string& prefix, const std::string& arguments)
 {
     const TemporaryFolder folder;
     const std::string out = (folder.path() / "out").string(), err = (folder.path() / "err").string();
-    const std::string command = prefix + "'" + CINCH_PROGRAM + "' " + arguments + " >'" + out + "' 2>'" + err + "' </dev/null";
+    const std::string command =
+        prefix + "'" + CINCH_PROGRAM + "' " + arguments + " >'" + out + "' 2>'" + err + "' </dev/null";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), slurp(out), slurp(err)};
 }

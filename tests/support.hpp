@@ -26,8 +26,8 @@ private:
 /// A file or folder of the reference material, or empty with a line that ctest takes for "skipped".
 std::optional<std::filesystem::path> shared(const std::string& name);
 
-/// How much of the long tests is run, as the environment's CINCH_TEST_SHARE says: 1 if it says nothing; little for sanitizers, like 0.05;
-/// above 1 also what takes minutes.
+/// How much of the long tests is run, as the environment's CINCH_TEST_SHARE says: 1 if it says nothing; little for
+/// sanitizers, like 0.05; above 1 also what takes minutes.
 double test_share();
 /// Of so many cases, but at least one, and all from a share of 1 on.
 std::size_t share_of(std::size_t cases);

@@ -100,7 +100,8 @@ void print(const std::vector<Figure>& figures)
 int main(int argc, char** argv)
 {
     if (argc != 2 || std::string(argv[1]) != "exact") {
-        fmt::print(stderr, "usage: cinch-bench exact\n\nMeasures the exact side against lrs and CGAL's linear program solver on one core, as ratios in one run.\n");
+        fmt::print(stderr, "usage: cinch-bench exact\n\nMeasures the exact side against lrs and CGAL's linear program "
+                           "solver on one core, as ratios in one run.\n");
         return 2;
     }
     cpu_set_t one;

@@ -5,11 +5,11 @@
 
 #include <benchmark/benchmark.h>
 
+#include "cinch/bounds.hpp"
+#include "cinch/deform.hpp"
 #include "experiments/input.hpp"
 #include "experiments/measure/baselines.hpp"
 #include "toolkit/bounds/bound_box.hpp"
-#include "cinch/bounds.hpp"
-#include "cinch/deform.hpp"
 #include "toolkit/hierarchy/packed_bvh.hpp"
 
 using namespace cinch;
@@ -49,7 +49,8 @@ template <class T> void kernel(benchmark::State& state, Method method, int kdop,
     KernelScratch<T> scratch;
     double supports[most_directions];
     for (auto _ : state) {
-        bound_packed<T>({packed.bvs, packed.node, packed.value, &maps, rounding, 1}, 0, 1, scratch, std::span(supports).first(static_cast<std::size_t>(kdop)));
+        bound_packed<T>({packed.bvs, packed.node, packed.value, &maps, rounding, 1}, 0, 1, scratch,
+                        std::span(supports).first(static_cast<std::size_t>(kdop)));
         benchmark::DoNotOptimize(supports);
     }
     state.SetComplexityN(state.range(0));
@@ -107,8 +108,10 @@ int main(int argc, char** argv)
     for (const Method method : kernel_methods)
         for (const int kdop : kdops) {
             const std::string name = std::string(name_of(method)) + "/k" + std::to_string(kdop);
-            sized(benchmark::RegisterBenchmark(("float/" + name).c_str(), kernel<float>, method, kdop, Rounding::proven));
-            sized(benchmark::RegisterBenchmark(("double/" + name).c_str(), kernel<double>, method, kdop, Rounding::proven));
+            sized(
+                benchmark::RegisterBenchmark(("float/" + name).c_str(), kernel<float>, method, kdop, Rounding::proven));
+            sized(benchmark::RegisterBenchmark(("double/" + name).c_str(), kernel<double>, method, kdop,
+                                               Rounding::proven));
         }
     for (const int kdop : {6, 26})
         sized(benchmark::RegisterBenchmark(("projection/k" + std::to_string(kdop)).c_str(), projection, kdop));

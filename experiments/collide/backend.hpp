@@ -5,16 +5,17 @@
 #include <string>
 #include <vector>
 
-#include "experiments/input.hpp"
 #include "cinch/collider.hpp"
+#include "experiments/input.hpp"
 
 namespace cinch {
 
-/// The bodies of a scene and their frames; all bodies have the same number of them. The frames are made beforehand: what is timed is
-/// what a backend does with them.
+/// The bodies of a scene and their frames; all bodies have the same number of them. The frames are made beforehand:
+/// what is timed is what a backend does with them.
 class CollideScene {
 public:
-    CollideScene(std::string scene_name, std::vector<Input> scene_bodies) : name(std::move(scene_name)), bodies(std::move(scene_bodies))
+    CollideScene(std::string scene_name, std::vector<Input> scene_bodies)
+        : name(std::move(scene_name)), bodies(std::move(scene_bodies))
     {
         for (const Input& body : bodies) {
             maps_.emplace_back();
@@ -40,8 +41,8 @@ public:
 
     virtual void evaluate(std::size_t frame) = 0; ///< all vertices; nothing where they are evaluated on demand
     virtual void update() = 0;
-    virtual void query(std::vector<TrianglePair>& pairs) = 0; ///< appends; in any order
-    virtual std::size_t bytes() const = 0; ///< of what it keeps besides surfaces and clips
+    virtual void query(std::vector<TrianglePair>& pairs) = 0;     ///< appends; in any order
+    virtual std::size_t bytes() const = 0;                        ///< of what it keeps besides surfaces and clips
     virtual const QueryCounts* counts() const { return nullptr; } ///< of the last frame, if it counts
 };
 
@@ -55,6 +56,7 @@ struct BackendKind {
 const std::vector<BackendKind>& backend_kinds();
 
 /// The pairs of bodies whose world boxes overlap, a < b. `low` and `high` per body.
-std::vector<std::pair<std::uint32_t, std::uint32_t>> overlapping_bodies(const std::vector<Vec3>& low, const std::vector<Vec3>& high);
+std::vector<std::pair<std::uint32_t, std::uint32_t>> overlapping_bodies(const std::vector<Vec3>& low,
+                                                                        const std::vector<Vec3>& high);
 
 } // namespace cinch

@@ -11,8 +11,8 @@
 namespace cinch {
 namespace {
 
-// GImpact's quantised tree: the grid is fixed when it is built, so it is built from boxes 8 times as far apart and refitted from then on.
-// It rounds to the nearest grid point, so boxes are grown by one.
+// GImpact's quantised tree: the grid is fixed when it is built, so it is built from boxes 8 times as far apart and
+// refitted from then on. It rounds to the nearest grid point, so boxes are grown by one.
 class Bullet final : public Backend {
 public:
     explicit Bullet(const CollideScene& scene) : positions_(scene)
@@ -56,7 +56,8 @@ public:
             btPairSet found;
             btGImpactQuantizedBvh::find_collision(&trees_[a].bvh, identity, &trees_[b].bvh, identity, found);
             for (int i = 0; i < found.size(); ++i) {
-                const auto s = static_cast<std::uint32_t>(found[i].m_index1), t = static_cast<std::uint32_t>(found[i].m_index2);
+                const auto s = static_cast<std::uint32_t>(found[i].m_index1),
+                           t = static_cast<std::uint32_t>(found[i].m_index2);
                 if (positions_.intersect(a, s, b, t))
                     pairs.push_back({a, s, b, t});
             }
@@ -84,7 +85,8 @@ private:
         void get_primitive_box(int primitive, btAABB& box) const override
         {
             const TrianglePoints p = positions->triangle(body, static_cast<std::uint32_t>(primitive));
-            const Vec3 low = p[0].cwiseMin(p[1]).cwiseMin(p[2]) - quantum, high = p[0].cwiseMax(p[1]).cwiseMax(p[2]) + quantum;
+            const Vec3 low = p[0].cwiseMin(p[1]).cwiseMin(p[2]) - quantum,
+                       high = p[0].cwiseMax(p[1]).cwiseMax(p[2]) + quantum;
             auto vector = [&](const Vec3& v) {
                 const Vec3 x = scale == 1 ? v : Vec3(centre + scale * (v - centre));
                 return btVector3(static_cast<btScalar>(x[0]), static_cast<btScalar>(x[1]), static_cast<btScalar>(x[2]));

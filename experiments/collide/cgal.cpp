@@ -15,11 +15,14 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Iterator = std::vector<Kernel::Triangle_3>::const_iterator;
 using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, CGAL::AABB_triangle_primitive<Kernel, Iterator>>>;
 
-// It has no refit: every frame builds anew. The triangles of one body near the other are asked for one by one; boxes by CGAL, triangles by
-// the exact test all others use.
+// It has no refit: every frame builds anew. The triangles of one body near the other are asked for one by one; boxes by
+// CGAL, triangles by the exact test all others use.
 class Cgal final : public Backend {
 public:
-    explicit Cgal(const CollideScene& scene) : positions_(scene), triangles_(positions_.bodies()), trees_(positions_.bodies()) {}
+    explicit Cgal(const CollideScene& scene)
+        : positions_(scene), triangles_(positions_.bodies()), trees_(positions_.bodies())
+    {
+    }
     void evaluate(std::size_t frame) override { positions_.evaluate(frame); }
     void update() override
     {
@@ -52,7 +55,8 @@ public:
                 trees_[b]->all_intersected_primitives(Kernel::Iso_cuboid_3(i->bbox()), std::back_inserter(found));
                 const auto s = static_cast<std::uint32_t>(i - triangles_[a].begin());
                 for (const Iterator j : found)
-                    if (const auto t = static_cast<std::uint32_t>(j - triangles_[b].begin()); positions_.intersect(a, s, b, t))
+                    if (const auto t = static_cast<std::uint32_t>(j - triangles_[b].begin());
+                        positions_.intersect(a, s, b, t))
                         pairs.push_back({a, s, b, t});
             }
         }

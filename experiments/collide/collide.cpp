@@ -5,11 +5,11 @@
 
 #include <fmt/format.h>
 
+#include "cinch/surface.hpp"
 #include "experiments/collide/collide_tables.hpp"
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/or_leave.hpp"
 #include "experiments/simulation/find_scene.hpp"
-#include "cinch/surface.hpp"
 
 namespace cinch {
 namespace {
@@ -38,7 +38,8 @@ std::vector<BackendKind> chosen_backends(const std::vector<std::string>& names)
 CollideScene load(const std::string& name, const CollideOptions& options)
 {
     if (!is_scene(name))
-        throw InputError::in_file(name, fmt::format("no such scene; known are {}, or a .json file", fmt::join(shipped_scenes(), ", ")));
+        throw InputError::in_file(
+            name, fmt::format("no such scene; known are {}, or a .json file", fmt::join(shipped_scenes(), ", ")));
     InputOptions what;
     what.input = name;
     what.frames = options.frames;
@@ -52,26 +53,52 @@ CollideScene load(const std::string& name, const CollideOptions& options)
 
 SceneResult run(const CollideScene& scene, const std::vector<BackendKind>& kinds, const CollideOptions& options)
 {
-    SceneResult result{scene.name, scene.bodies.size(), scene.bodies[0].surface.mesh.vertices.size(), scene.bodies[0].surface.weights.node_count, {}, kinds.size()};
+    SceneResult result{scene.name,
+                       scene.bodies.size(),
+                       scene.bodies[0].surface.mesh.vertices.size(),
+                       scene.bodies[0].surface.weights.node_count,
+                       {},
+                       kinds.size()};
     result.backends = measure(scene, kinds, {options.rounds, options.threads, options.cold});
     return result;
 }
 
 Json record(const SceneResult& r, const Measured& m, bool cold)
 {
-    Json out{{"experiment", "collide"}, {"scene", r.scene}, {"backend", m.backend}, {"bodies", r.bodies}, {"vertices", r.vertices}, {"n", r.nodes}, {"frames_done", m.frames}, {"frames", m.frames_wanted},
-             {"rounds_done", m.rounds}, {"rounds", m.rounds_wanted}, {"complete", m.is_complete()},
-             {"cold", cold}, {"evaluate_ms", m.evaluate_ms}, {"update_ms", m.update_ms}, {"query_ms", m.query_ms}, {"total_ms", m.total_ms}, {"pairs", m.pairs},
-             {"pairs_differing", m.differing}, {"megabytes_per_body", m.megabytes}};
+    Json out{{"experiment", "collide"},
+             {"scene", r.scene},
+             {"backend", m.backend},
+             {"bodies", r.bodies},
+             {"vertices", r.vertices},
+             {"n", r.nodes},
+             {"frames_done", m.frames},
+             {"frames", m.frames_wanted},
+             {"rounds_done", m.rounds},
+             {"rounds", m.rounds_wanted},
+             {"complete", m.is_complete()},
+             {"cold", cold},
+             {"evaluate_ms", m.evaluate_ms},
+             {"update_ms", m.update_ms},
+             {"query_ms", m.query_ms},
+             {"total_ms", m.total_ms},
+             {"pairs", m.pairs},
+             {"pairs_differing", m.differing},
+             {"megabytes_per_body", m.megabytes}};
     if (const Measured* full = r.of("refit-1"))
         out["gain"] = full->total_ms / m.total_ms;
     if (m.counts) {
         const QueryCounts& c = m.sums;
-        const double frames = static_cast<double>(m.frames), tests = std::max<double>(1, static_cast<double>(c.triangle_tests));
+        const double frames = static_cast<double>(m.frames),
+                     tests = std::max<double>(1, static_cast<double>(c.triangle_tests));
         auto mean = [&](auto x) { return static_cast<double>(x) / frames; };
-        out.update({{"mean_bounds", mean(c.updates.bounds)}, {"mean_leaves", mean(c.updates.leaves)}, {"mean_vertices", mean(c.updates.vertices)},
-                    {"mean_merged", mean(c.updates.merged)}, {"mean_box_tests", mean(c.box_tests)}, {"mean_leaf_pairs", mean(c.leaf_pairs)},
-                    {"mean_triangle_tests", mean(c.triangle_tests)}, {"share_double", static_cast<double>(c.in_double) / tests},
+        out.update({{"mean_bounds", mean(c.updates.bounds)},
+                    {"mean_leaves", mean(c.updates.leaves)},
+                    {"mean_vertices", mean(c.updates.vertices)},
+                    {"mean_merged", mean(c.updates.merged)},
+                    {"mean_box_tests", mean(c.box_tests)},
+                    {"mean_leaf_pairs", mean(c.leaf_pairs)},
+                    {"mean_triangle_tests", mean(c.triangle_tests)},
+                    {"share_double", static_cast<double>(c.in_double) / tests},
                     {"share_exact", static_cast<double>(c.in_exact) / tests}});
     }
     auto rounded = [](const std::vector<double>& all) { // six digits say it
@@ -94,7 +121,8 @@ int collide(const CollideOptions& options)
     std::vector<std::string> names = options.scenes;
     const bool all = names.empty();
     if (all)
-        names = {"santa-ring-1", "santa-ring-2", "santa-ring-3", "santa-ring-4", "santa-ring-5", "santa-ring-6", "santa-ring-7", "santa-ring-8", "fishes"};
+        names = {"santa-ring-1", "santa-ring-2", "santa-ring-3", "santa-ring-4", "santa-ring-5",
+                 "santa-ring-6", "santa-ring-7", "santa-ring-8", "fishes"};
     const auto own = std::find_if(kinds.begin(), kinds.end(), [](const BackendKind& k) { return k.name == "cinch"; });
     const std::size_t fewer[] = {12, 6}; // of the fishes: how time grows with bodies
     const std::size_t wanted = names.size() + (all && own != kinds.end() ? std::size(fewer) : 0);
@@ -122,8 +150,11 @@ int collide(const CollideOptions& options)
         if (results.empty())
             throw;
     }
-    const auto whole = static_cast<std::size_t>(std::count_if(results.begin(), results.end(), [](const SceneResult& r) { return r.is_complete(); }));
-    Completeness completeness{0, 0, whole == wanted, whole == wanted ? "" : interrupted_after(whole, wanted, wanted == 1 ? "scene" : "scenes")};
+    const auto whole = static_cast<std::size_t>(
+        std::count_if(results.begin(), results.end(), [](const SceneResult& r) { return r.is_complete(); }));
+    Completeness completeness{0, 0, whole == wanted,
+                              whole == wanted ? ""
+                                              : interrupted_after(whole, wanted, wanted == 1 ? "scene" : "scenes")};
     for (const SceneResult& r : results)
         for (const Measured& m : r.backends) {
             completeness.frames_done += m.frames;
@@ -137,7 +168,11 @@ int collide(const CollideOptions& options)
             different |= m.differing > 0 && m.counts; // of this project's own
         }
     for (const Figure& f : figures_of(results, options.cold))
-        records.push_back({{"experiment", "collide"}, {"figure", f.what}, {"measured", f.measured}, {"target", f.target}, {"reached", f.reached}});
+        records.push_back({{"experiment", "collide"},
+                           {"figure", f.what},
+                           {"measured", f.measured},
+                           {"target", f.target},
+                           {"reached", f.reached}});
     for (const Slope& s : slopes_of(results))
         records.push_back({{"experiment", "collide"}, {"slope", s.what}, {"exponent", s.exponent}});
     output.set(completeness);

@@ -19,8 +19,8 @@ struct CollideOptions {
     OutputOptions output;
 };
 
-/// The paper's Tables 2 to 4 and Fig. 7 on this machine: this project's collision detection against its baselines and peers. Returns the
-/// exit status: 1 if a backend of this project found other pairs than the others.
+/// The paper's Tables 2 to 4 and Fig. 7 on this machine: this project's collision detection against its baselines and
+/// peers. Returns the exit status: 1 if a backend of this project found other pairs than the others.
 int collide(const CollideOptions& options);
 
 } // namespace cinch

@@ -16,28 +16,44 @@ namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
-std::string ms(double x) { return x < 10 ? fmt::format("{:.3f}", x) : x < 100 ? fmt::format("{:.1f}", x) : fmt::format("{:.0f}", x); }
+std::string ms(double x)
+{
+    return x < 10 ? fmt::format("{:.3f}", x) : x < 100 ? fmt::format("{:.1f}", x) : fmt::format("{:.0f}", x);
+}
 std::string times(double x) { return x < 10 ? fmt::format("{:.2f}", x) : fmt::format("{:.0f}", x); }
 
 // Place in Table 2, 1 to 8; 0 for other scenes.
 std::size_t ring(const std::string& scene)
 {
-    return scene.size() == 12 && scene.starts_with("santa-ring-") && scene.back() >= '1' && scene.back() <= '8' ? static_cast<std::size_t>(scene.back() - '0') : 0;
+    return scene.size() == 12 && scene.starts_with("santa-ring-") && scene.back() >= '1' && scene.back() <= '8'
+               ? static_cast<std::size_t>(scene.back() - '0')
+               : 0;
 }
 
 // Of the paper's Table 3, which has one for two scenes: they differ in simulation nodes only.
-std::string row_of_table_3(std::size_t ring) { return fmt::format("{}, {}", (ring - 1) / 2 * 2 + 1, (ring - 1) / 2 * 2 + 2); }
+std::string row_of_table_3(std::size_t ring)
+{
+    return fmt::format("{}, {}", (ring - 1) / 2 * 2 + 1, (ring - 1) / 2 * 2 + 2);
+}
 
 // "60", or "12 of 60" after an interrupt.
-std::string frames_of(const Measured& m) { return m.frames == m.frames_wanted ? grouped(m.frames) : fmt::format("{} of {}", grouped(m.frames), grouped(m.frames_wanted)); }
+std::string frames_of(const Measured& m)
+{
+    return m.frames == m.frames_wanted ? grouped(m.frames)
+                                       : fmt::format("{} of {}", grouped(m.frames), grouped(m.frames_wanted));
+}
 
 void print_scenes(const std::vector<SceneResult>& results)
 {
     Rows rows;
     for (const SceneResult& r : results)
-        rows.push_back({r.scene, grouped(r.bodies), grouped(r.vertices), grouped(r.nodes), fmt::format("{:.0f}", r.backends[0].pairs),
-                        fmt::format("{:.0f}", *std::max_element(r.backends[0].pairs_of_frame.begin(), r.backends[0].pairs_of_frame.end())), frames_of(r.backends[0])});
-    fmt::print("Scenes (Table 2); pairs: intersecting triangles per frame\n\n{}\n", table({"scene", "bodies", "vertices", "nodes", "pairs: median", "most", "frames"}, rows));
+        rows.push_back({r.scene, grouped(r.bodies), grouped(r.vertices), grouped(r.nodes),
+                        fmt::format("{:.0f}", r.backends[0].pairs),
+                        fmt::format("{:.0f}", *std::max_element(r.backends[0].pairs_of_frame.begin(),
+                                                                r.backends[0].pairs_of_frame.end())),
+                        frames_of(r.backends[0])});
+    fmt::print("Scenes (Table 2); pairs: intersecting triangles per frame\n\n{}\n",
+               table({"scene", "bodies", "vertices", "nodes", "pairs: median", "most", "frames"}, rows));
 }
 
 void print_table_3(const std::vector<SceneResult>& results)
@@ -49,18 +65,23 @@ void print_table_3(const std::vector<SceneResult>& results)
             continue;
         std::vector<std::string> row{r.scene};
         for (const Measured* m : {full, hash})
-            for (const double x : m ? std::vector{m->evaluate_ms + m->update_ms, m->query_ms, m->total_ms} : std::vector<double>(3, NAN))
+            for (const double x :
+                 m ? std::vector{m->evaluate_ms + m->update_ms, m->query_ms, m->total_ms} : std::vector<double>(3, NAN))
                 row.push_back(std::isnan(x) ? "-" : ms(x));
         const std::size_t n = ring(r.scene);
-        auto paper = [&](const char* column) { return fmt::format("{:.0f}", paper_figure("Table 3", row_of_table_3(n), column).value); };
-        const double fishes = paper_figure("Fig. 7", "fishes", "full refit").value + paper_figure("Fig. 7", "fishes", "full query").value;
+        auto paper = [&](const char* column) {
+            return fmt::format("{:.0f}", paper_figure("Table 3", row_of_table_3(n), column).value);
+        };
+        const double fishes =
+            paper_figure("Fig. 7", "fishes", "full refit").value + paper_figure("Fig. 7", "fishes", "full query").value;
         row.push_back(n ? paper("total") : r.scene == "fishes" ? fmt::format("{:.0f}", fishes) : "-");
         row.push_back(n ? paper("hash total") : "-");
         rows.push_back(row);
     }
     if (rows.empty())
         return;
-    fmt::print("Full bottom-up AABBs (refit-1) and spatial hashing, ms (Table 3); refit and load\nwith the vertices' evaluation\n\n{}\n",
+    fmt::print("Full bottom-up AABBs (refit-1) and spatial hashing, ms (Table 3); refit and load\nwith the vertices' "
+               "evaluation\n\n{}\n",
                table({"scene", "refit", "query", "total", "load", "query", "total", "paper", "paper"}, rows));
 }
 
@@ -75,7 +96,8 @@ void print_table_4(const std::vector<SceneResult>& results)
         const std::size_t n = ring(r.scene);
         for (const Measured* m : {aabb, obb}) {
             const double gain = n ? paper_figure("Table 4", std::to_string(n), m == aabb ? "gain" : "OBB gain").value
-                                  : r.scene == "fishes" && m == aabb ? paper_figure("Fig. 7", "fishes", "gain").value : 0;
+                                : r.scene == "fishes" && m == aabb ? paper_figure("Fig. 7", "fishes", "gain").value
+                                                                   : 0;
             row.push_back(m ? ms(m->update_ms) : "-");
             row.push_back(m ? ms(m->query_ms) : "-");
             row.push_back(m ? ms(m->total_ms) : "-");
@@ -86,19 +108,25 @@ void print_table_4(const std::vector<SceneResult>& results)
     }
     if (rows.empty())
         return;
-    fmt::print("The paper's method, Eq. 12 with one triangle per leaf, ms (Table 4): AABB/AABB,\nthen OBB/14-DOP; gain over refit-1, here and in the paper\n\n{}\n",
-               table({"scene", "refit", "query", "total", "gain", "paper", "refit", "query", "total", "gain", "paper"}, rows));
+    fmt::print(
+        "The paper's method, Eq. 12 with one triangle per leaf, ms (Table 4): AABB/AABB,\nthen OBB/14-DOP; gain over "
+        "refit-1, here and in the paper\n\n{}\n",
+        table({"scene", "refit", "query", "total", "gain", "paper", "refit", "query", "total", "gain", "paper"}, rows));
 }
 
 void print_backends(const SceneResult& r)
 {
     Rows rows;
     for (const Measured& m : r.backends)
-        rows.push_back({m.frames == m.frames_wanted ? m.backend : fmt::format("{} ({} frames)", m.backend, frames_of(m)), m.evaluate_ms < 5e-4 ? "-" : ms(m.evaluate_ms), ms(m.update_ms), ms(m.query_ms), ms(m.total_ms),
-                        times(m.total_ms / r.backends[0].total_ms), fmt::format("{:.0f}", m.pairs), m.differing ? grouped(m.differing) : "-",
-                        fmt::format("{:.1f}", m.megabytes)});
+        rows.push_back(
+            {m.frames == m.frames_wanted ? m.backend : fmt::format("{} ({} frames)", m.backend, frames_of(m)),
+             m.evaluate_ms < 5e-4 ? "-" : ms(m.evaluate_ms), ms(m.update_ms), ms(m.query_ms), ms(m.total_ms),
+             times(m.total_ms / r.backends[0].total_ms), fmt::format("{:.0f}", m.pairs),
+             m.differing ? grouped(m.differing) : "-", fmt::format("{:.1f}", m.megabytes)});
     fmt::print("{}, ms per frame (medians over {} frames){}\n\n{}\n", r.scene, frames_of(r.backends[0]),
-               r.is_complete() ? "" : ", " + interrupted_after(r.backends.size() - !r.backends.back().is_complete(), r.backends_wanted, "backends"),
+               r.is_complete() ? ""
+                               : ", " + interrupted_after(r.backends.size() - !r.backends.back().is_complete(),
+                                                          r.backends_wanted, "backends"),
                table({"", "evaluate", "update", "query", "total", "times", "pairs", "differ", "MB/body"}, rows));
 }
 
@@ -110,25 +138,36 @@ void print_counts(const std::vector<SceneResult>& results)
         if (!m.counts)
             continue;
         const QueryCounts& c = m.sums;
-        auto per_frame = [&](auto x) { return fmt::format("{:.0f}", static_cast<double>(x) / static_cast<double>(m.frames)); };
+        auto per_frame = [&](auto x) {
+            return fmt::format("{:.0f}", static_cast<double>(x) / static_cast<double>(m.frames));
+        };
         const double tests = std::max<double>(1, static_cast<double>(c.triangle_tests));
-        rows.push_back({r.scene, per_frame(c.updates.bounds), per_frame(c.updates.leaves), per_frame(c.updates.vertices), per_frame(c.box_tests), per_frame(c.leaf_pairs),
-                        per_frame(c.triangle_tests), fmt::format("{:.2f}", 100 * (1 - static_cast<double>(c.in_double + c.in_exact) / tests)),
-                        fmt::format("{:.2f}", 100 * static_cast<double>(c.in_double) / tests), fmt::format("{:.3f}", 100 * static_cast<double>(c.in_exact) / tests)});
+        rows.push_back({r.scene, per_frame(c.updates.bounds), per_frame(c.updates.leaves),
+                        per_frame(c.updates.vertices), per_frame(c.box_tests), per_frame(c.leaf_pairs),
+                        per_frame(c.triangle_tests),
+                        fmt::format("{:.2f}", 100 * (1 - static_cast<double>(c.in_double + c.in_exact) / tests)),
+                        fmt::format("{:.2f}", 100 * static_cast<double>(c.in_double) / tests),
+                        fmt::format("{:.3f}", 100 * static_cast<double>(c.in_exact) / tests)});
     }
     if (rows.empty())
         return;
-    fmt::print("What '{}' did, means per frame; triangle pairs decided in float, double,\nexactly, %\n\n{}\n", results[0].backends[0].backend,
-               table({"scene", "bounds", "leaves", "vertices", "boxes", "leaf p.", "triangles", "float", "double", "exact"}, rows));
+    fmt::print(
+        "What '{}' did, means per frame; triangle pairs decided in float, double,\nexactly, %\n\n{}\n",
+        results[0].backends[0].backend,
+        table({"scene", "bounds", "leaves", "vertices", "boxes", "leaf p.", "triangles", "float", "double", "exact"},
+              rows));
 }
 
-// Of the frames in order of the default's contacts, the quarter with the most and so on: the worst median ratio to the best full refit.
+// Of the frames in order of the default's contacts, the quarter with the most and so on: the worst median ratio to the
+// best full refit.
 double worst_quarter(const SceneResult& r, const Measured& own, const std::vector<const Measured*>& full)
 {
     std::vector<std::size_t> order(own.total_of_frame.size());
     for (std::size_t i = 0; i < order.size(); ++i)
         order[i] = i;
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return r.backends[0].pairs_of_frame[a] < r.backends[0].pairs_of_frame[b]; });
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return r.backends[0].pairs_of_frame[a] < r.backends[0].pairs_of_frame[b];
+    });
     double worst = 0;
     for (std::size_t q = 0; q < 4; ++q) {
         std::vector<double> ratios;
@@ -159,18 +198,21 @@ const Measured* SceneResult::of(const std::string& backend) const
 
 bool SceneResult::is_complete() const
 {
-    return backends.size() == backends_wanted && std::all_of(backends.begin(), backends.end(), [](const Measured& m) { return m.is_complete(); });
+    return backends.size() == backends_wanted &&
+           std::all_of(backends.begin(), backends.end(), [](const Measured& m) { return m.is_complete(); });
 }
 
 std::vector<Figure> figures_of(const std::vector<SceneResult>& results, bool cold)
 {
-    constexpr double over_embree[8] = {5, 3.3, 35, 35, 2.7, 2.7, 8, 8}, over_refit[8] = {2.5, 1.7, 17, 17, 1.7, 1.7, 4.5, 4.5};
+    constexpr double over_embree[8] = {5, 3.3, 35, 35, 2.7, 2.7, 8, 8},
+                     over_refit[8] = {2.5, 1.7, 17, 17, 1.7, 1.7, 4.5, 4.5};
     std::vector<Figure> figures;
     auto ratio = [&](const std::string& what, double measured, double target) {
         figures.push_back({what, times(measured), fmt::format(">= {}", target), measured >= target});
     };
     for (const SceneResult& r : results) {
-        const Measured *own = r.of("cinch"), *embree = r.of("embree"), *refit = r.of("refit-16"), *full = r.of("cinch-full");
+        const Measured *own = r.of("cinch"), *embree = r.of("embree"), *refit = r.of("refit-16"),
+                       *full = r.of("cinch-full");
         const std::size_t n = ring(r.scene);
         if (!own)
             continue;
@@ -184,7 +226,8 @@ std::vector<Figure> figures_of(const std::vector<SceneResult>& results, bool col
             figures.push_back({r.scene + ": cinch / full refit, worst 1/4", times(worst), "<= 1.1", worst <= 1.1});
         }
         if (n && r.vertices > 40000)
-            figures.push_back({r.scene + ": MB per body", fmt::format("{:.1f}", own->megabytes), "<= 16", own->megabytes <= 16});
+            figures.push_back(
+                {r.scene + ": MB per body", fmt::format("{:.1f}", own->megabytes), "<= 16", own->megabytes <= 16});
     }
     return figures;
 }
@@ -202,12 +245,15 @@ std::vector<Slope> slopes_of(const std::vector<SceneResult>& results)
         const SceneResult *a = find(from), *b = find(to);
         if (a && b)
             slopes.push_back({fmt::format("{}, {} to {}", what, from, to),
-                              log_slope({static_cast<double>(size(*a)), static_cast<double>(size(*b))}, {a->of("cinch")->total_ms, b->of("cinch")->total_ms})});
+                              log_slope({static_cast<double>(size(*a)), static_cast<double>(size(*b))},
+                                        {a->of("cinch")->total_ms, b->of("cinch")->total_ms})});
     };
     for (const auto& [from, to] : {std::pair("1", "3"), std::pair("2", "4"), std::pair("5", "7"), std::pair("6", "8")})
-        between("vertices", std::string("santa-ring-") + from, std::string("santa-ring-") + to, [](const SceneResult& r) { return r.vertices; });
+        between("vertices", std::string("santa-ring-") + from, std::string("santa-ring-") + to,
+                [](const SceneResult& r) { return r.vertices; });
     for (const auto& [from, to] : {std::pair("1", "2"), std::pair("3", "4"), std::pair("5", "6"), std::pair("7", "8")})
-        between("nodes", std::string("santa-ring-") + from, std::string("santa-ring-") + to, [](const SceneResult& r) { return r.nodes; });
+        between("nodes", std::string("santa-ring-") + from, std::string("santa-ring-") + to,
+                [](const SceneResult& r) { return r.nodes; });
     for (const auto& [from, to] : {std::pair("fishes/6", "fishes/12"), std::pair("fishes/12", "fishes")})
         between("bodies", from, to, [](const SceneResult& r) { return r.bodies; });
     for (const SceneResult& r : results)
@@ -231,8 +277,11 @@ void print_tables(const std::vector<SceneResult>& results, bool cold)
     print_table_4(results);
     for (const SceneResult& r : results)
         print_backends(r);
-    fmt::print("times: the total over that of '{}'; differ: pairs that only one of the two\nfound. evaluate: all vertices up front, by SIMD with the bits of the exact test;\n'-' where they are evaluated on demand. {}\n\n",
-               results[0].backends[0].backend, cold ? "Caches evicted before every frame." : "Every backend runs through all frames in turn.");
+    fmt::print(
+        "times: the total over that of '{}'; differ: pairs that only one of the two\nfound. evaluate: all vertices up "
+        "front, by SIMD with the bits of the exact test;\n'-' where they are evaluated on demand. {}\n\n",
+        results[0].backends[0].backend,
+        cold ? "Caches evicted before every frame." : "Every backend runs through all frames in turn.");
     print_counts(results);
     if (const auto figures = figures_of(results, cold); !figures.empty()) {
         print(figures);

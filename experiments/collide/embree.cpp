@@ -8,13 +8,14 @@
 
 #include <embree3/rtcore.h>
 
-#include "experiments/collide/positions.hpp"
 #include "cinch/surface.hpp"
+#include "experiments/collide/positions.hpp"
 
 namespace cinch {
 namespace {
 
-// User geometry per body (rtcCollide takes no other), refitted in place: REFIT needs a dynamic scene, or it rebuilds silently.
+// User geometry per body (rtcCollide takes no other), refitted in place: REFIT needs a dynamic scene, or it rebuilds
+// silently.
 class Embree final : public Backend {
 public:
     explicit Embree(const CollideScene& scene) : positions_(scene), device_(rtcNewDevice("threads=1"))

@@ -19,7 +19,8 @@ public:
 
     void leafTesting(int node_a, int node_b) const override
     {
-        const auto i = static_cast<std::uint32_t>(model1->getBV(node_a).primitiveId()), j = static_cast<std::uint32_t>(model2->getBV(node_b).primitiveId());
+        const auto i = static_cast<std::uint32_t>(model1->getBV(node_a).primitiveId()),
+                   j = static_cast<std::uint32_t>(model2->getBV(node_b).primitiveId());
         if (positions->intersect(a, i, b, j))
             pairs->push_back({a, i, b, j});
     }

@@ -25,7 +25,10 @@ Box outward(const Vec3& low, const Vec3& high)
 struct TriangleBox {
     Vec3 low, high;
 
-    explicit TriangleBox(const TrianglePoints& p) : low(p[0].cwiseMin(p[1]).cwiseMin(p[2])), high(p[0].cwiseMax(p[1]).cwiseMax(p[2])) {}
+    explicit TriangleBox(const TrianglePoints& p)
+        : low(p[0].cwiseMin(p[1]).cwiseMin(p[2])), high(p[0].cwiseMax(p[1]).cwiseMax(p[2]))
+    {
+    }
     bool overlaps(const TriangleBox& other) const
     {
         for (int r = 0; r < 3; ++r)
@@ -35,17 +38,20 @@ struct TriangleBox {
     }
 };
 
-// The classical way [van den Bergen 1997]: all vertices, all triangles' boxes, all boxes bottom-up, then two trees against each other.
+// The classical way [van den Bergen 1997]: all vertices, all triangles' boxes, all boxes bottom-up, then two trees
+// against each other.
 class FullRefit final : public Backend {
 public:
     FullRefit(const CollideScene& scene, bool single) : positions_(scene)
     {
         for (const Input& body : scene.bodies) {
-            const Bvh bvh = single ? build_bvh(body.surface, 1, RestDetail::boxes) : build_bvh(body.surface, ClusterSize{16, 16}, RestDetail::boxes);
+            const Bvh bvh = single ? build_bvh(body.surface, 1, RestDetail::boxes)
+                                   : build_bvh(body.surface, ClusterSize{16, 16}, RestDetail::boxes);
             Tree& tree = trees_.emplace_back();
             tree.triangle = bvh.triangle;
             for (const Bv& bv : bvh.bvs) {
-                Node node{bv.first_child, bv.first_triangle, bv.triangle_count, static_cast<std::uint32_t>(tree.vertex.size()), 0};
+                Node node{bv.first_child, bv.first_triangle, bv.triangle_count,
+                          static_cast<std::uint32_t>(tree.vertex.size()), 0};
                 if (bv.is_leaf()) {
                     const auto vertices = vertices_of(body.surface, bvh, bv);
                     tree.vertex.insert(tree.vertex.end(), vertices.begin(), vertices.end());
@@ -76,7 +82,8 @@ public:
     {
         std::size_t bytes = positions_.bytes();
         for (const Tree& tree : trees_)
-            bytes += tree.boxes.size() * (sizeof(Box) + sizeof(Node)) + (tree.triangle.size() + tree.vertex.size()) * sizeof(std::uint32_t);
+            bytes += tree.boxes.size() * (sizeof(Box) + sizeof(Node)) +
+                     (tree.triangle.size() + tree.vertex.size()) * sizeof(std::uint32_t);
         return bytes;
     }
 
@@ -136,7 +143,8 @@ private:
         const Node &x = ta.nodes[i], &y = tb.nodes[j];
         near_.clear();
         for (std::uint32_t t = y.first; t < y.first + y.count; ++t)
-            if (const TriangleBox box(positions_.triangle(b, tb.triangle[t])); outward(box.low, box.high).overlaps(ta.boxes[i]))
+            if (const TriangleBox box(positions_.triangle(b, tb.triangle[t]));
+                outward(box.low, box.high).overlaps(ta.boxes[i]))
                 near_.emplace_back(tb.triangle[t], box);
         if (near_.empty())
             return;
@@ -159,7 +167,13 @@ private:
 
 } // namespace
 
-std::unique_ptr<Backend> make_full_refit_1(const CollideScene& scene) { return std::make_unique<FullRefit>(scene, true); }
-std::unique_ptr<Backend> make_full_refit_16(const CollideScene& scene) { return std::make_unique<FullRefit>(scene, false); }
+std::unique_ptr<Backend> make_full_refit_1(const CollideScene& scene)
+{
+    return std::make_unique<FullRefit>(scene, true);
+}
+std::unique_ptr<Backend> make_full_refit_16(const CollideScene& scene)
+{
+    return std::make_unique<FullRefit>(scene, false);
+}
 
 } // namespace cinch

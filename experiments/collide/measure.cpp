@@ -61,7 +61,9 @@ void add(QueryCounts& sum, const QueryCounts& c)
 void run_frame(Contestant& c, std::size_t frame, bool cold, std::vector<TrianglePair>& pairs)
 {
     using Clock = std::chrono::steady_clock;
-    auto ms = [](Clock::time_point from, Clock::time_point to) { return std::chrono::duration<double, std::milli>(to - from).count(); };
+    auto ms = [](Clock::time_point from, Clock::time_point to) {
+        return std::chrono::duration<double, std::milli>(to - from).count();
+    };
     throw_if_interrupted();
     if (cold)
         evict_caches();
@@ -84,7 +86,8 @@ void run_frame(Contestant& c, std::size_t frame, bool cold, std::vector<Triangle
 
 } // namespace
 
-std::vector<Measured> measure(const CollideScene& scene, const std::vector<BackendKind>& kinds, const MeasureOptions& options)
+std::vector<Measured> measure(const CollideScene& scene, const std::vector<BackendKind>& kinds,
+                              const MeasureOptions& options)
 {
     std::vector<std::vector<TrianglePair>> expected(scene.frames()); // of the first one
     std::vector<Contestant> all(kinds.size());
@@ -98,7 +101,8 @@ std::vector<Measured> measure(const CollideScene& scene, const std::vector<Backe
             progress.done(k + 1);
         }
     }
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(options.threads));
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<std::size_t>(options.threads));
     if (options.threads == 1)
         pin_to_one_core();
     std::vector<TrianglePair> pairs;
@@ -123,7 +127,8 @@ std::vector<Measured> measure(const CollideScene& scene, const std::vector<Backe
                         expected[f] = pairs;
                     } else {
                         std::vector<TrianglePair> different;
-                        std::set_symmetric_difference(pairs.begin(), pairs.end(), expected[f].begin(), expected[f].end(), std::back_inserter(different));
+                        std::set_symmetric_difference(pairs.begin(), pairs.end(), expected[f].begin(),
+                                                      expected[f].end(), std::back_inserter(different));
                         c.out.differing += different.size();
                     }
                 }

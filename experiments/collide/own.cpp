@@ -8,12 +8,15 @@ namespace {
 
 class Own final : public Backend {
 public:
-    Own(const CollideScene& scene, const LazyOptions& options, ClusterSize leaf) : scene_(scene), collider_(options), frames_(scene.bodies.size())
+    Own(const CollideScene& scene, const LazyOptions& options, ClusterSize leaf)
+        : scene_(scene), collider_(options), frames_(scene.bodies.size())
     {
         const RestDetail detail = options.methods.within(box_methods) ? RestDetail::boxes : RestDetail::inner;
         for (const Input& body : scene.bodies) { // the trees keep what they need
             throw_if_interrupted();
-            collider_.add(leaf.triangles == 1 ? build_bvh(body.surface, 1, detail) : build_bvh(body.surface, leaf, detail), body.surface);
+            collider_.add(leaf.triangles == 1 ? build_bvh(body.surface, 1, detail)
+                                              : build_bvh(body.surface, leaf, detail),
+                          body.surface);
         }
     }
     void evaluate(std::size_t frame) override
@@ -47,9 +50,15 @@ LazyOptions with_update(Update update)
 
 } // namespace
 
-std::unique_ptr<Backend> make_default(const CollideScene& scene) { return std::make_unique<Own>(scene, LazyOptions{}, ClusterSize{16, 16}); }
+std::unique_ptr<Backend> make_default(const CollideScene& scene)
+{
+    return std::make_unique<Own>(scene, LazyOptions{}, ClusterSize{16, 16});
+}
 
-std::unique_ptr<Backend> make_simd_refit(const CollideScene& scene) { return std::make_unique<Own>(scene, with_update(Update::full), ClusterSize{16, 16}); }
+std::unique_ptr<Backend> make_simd_refit(const CollideScene& scene)
+{
+    return std::make_unique<Own>(scene, with_update(Update::full), ClusterSize{16, 16});
+}
 
 std::unique_ptr<Backend> make_pair_front(const CollideScene& scene)
 {

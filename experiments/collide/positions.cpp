@@ -23,7 +23,8 @@ bool Positions::intersect(std::size_t a, std::uint32_t triangle_a, std::size_t b
 {
     const TrianglePoints p = triangle(a, triangle_a), q = triangle(b, triangle_b);
     for (int r = 0; r < 3; ++r)
-        if (std::max({p[0][r], p[1][r], p[2][r]}) < std::min({q[0][r], q[1][r], q[2][r]}) || std::max({q[0][r], q[1][r], q[2][r]}) < std::min({p[0][r], p[1][r], p[2][r]}))
+        if (std::max({p[0][r], p[1][r], p[2][r]}) < std::min({q[0][r], q[1][r], q[2][r]}) ||
+            std::max({q[0][r], q[1][r], q[2][r]}) < std::min({p[0][r], p[1][r], p[2][r]}))
             return false;
     return cinch::intersect(p, q);
 }
@@ -36,7 +37,8 @@ std::size_t Positions::bytes() const
     return bytes;
 }
 
-std::vector<std::pair<std::uint32_t, std::uint32_t>> overlapping_bodies(const std::vector<Vec3>& low, const std::vector<Vec3>& high)
+std::vector<std::pair<std::uint32_t, std::uint32_t>> overlapping_bodies(const std::vector<Vec3>& low,
+                                                                        const std::vector<Vec3>& high)
 {
     std::vector<std::uint32_t> order(low.size());
     for (std::uint32_t i = 0; i < order.size(); ++i)
@@ -45,7 +47,8 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> overlapping_bodies(const st
     std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
     for (std::size_t i = 0; i < order.size(); ++i)
         for (std::size_t j = i + 1; j < order.size() && low[order[j]][0] <= high[order[i]][0]; ++j)
-            if ((low[order[i]].array() <= high[order[j]].array()).all() && (low[order[j]].array() <= high[order[i]].array()).all())
+            if ((low[order[i]].array() <= high[order[j]].array()).all() &&
+                (low[order[j]].array() <= high[order[i]].array()).all())
                 pairs.push_back(std::minmax(order[i], order[j]));
     std::sort(pairs.begin(), pairs.end());
     return pairs;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "cinch/deform.hpp"
 #include "experiments/collide/backend.hpp"
 #include "toolkit/collide/triangle_pair.hpp"
-#include "cinch/deform.hpp"
 
 namespace cinch {
 

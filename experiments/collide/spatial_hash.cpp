@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "toolkit/collide/spatial_hash.hpp"
 #include "experiments/collide/own.hpp"
 #include "experiments/collide/positions.hpp"
-#include "toolkit/collide/spatial_hash.hpp"
 
 namespace cinch {
 namespace {

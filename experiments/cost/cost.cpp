@@ -22,7 +22,8 @@ struct Row {
     std::string method, arithmetic, guarantee;
     bool proven;
     double ns, ratio_to_double, looseness;
-    double below, worst_below; ///< share of the supports below the exact value, and by how much at most, in widths; NaN: none known
+    double below, worst_below; ///< share of the supports below the exact value, and by how much at most, in widths;
+                               ///< NaN: none known
     bool pareto = false;
 };
 
@@ -41,11 +42,13 @@ std::vector<Row> measure(const CostSample& sample, int kdop, double seconds)
     std::vector<CostContestant> contestants = scalar_contestants(sample, kdop);
     for (CostContestant& kernel : kernel_contestants(sample, kdop))
         contestants.push_back(std::move(kernel));
-    // The exact value of a method over the BV's own box is that of its rational form; of the others the support of the vertices.
+    // The exact value of a method over the BV's own box is that of its rational form; of the others the support of the
+    // vertices.
     std::vector<double> truth(sample.bvh.bvs.size() * k), vertices;
     refit(sample.bvh, sample.surface, sample.maps, {Method::vertices, kdop, Rounding::plain}, truth);
     for (std::size_t bv : sample.bvs)
-        vertices.insert(vertices.end(), truth.begin() + static_cast<std::ptrdiff_t>(bv * k), truth.begin() + static_cast<std::ptrdiff_t>((bv + 1) * k));
+        vertices.insert(vertices.end(), truth.begin() + static_cast<std::ptrdiff_t>(bv * k),
+                        truth.begin() + static_cast<std::ptrdiff_t>((bv + 1) * k));
 
     std::vector<std::vector<double>> supports;
     std::vector<std::function<void()>> calls;
@@ -59,26 +62,42 @@ std::vector<Row> measure(const CostSample& sample, int kdop, double seconds)
     const std::vector<double> ns = race(calls, seconds);
 
     auto find = [&](const std::string& method, const char* arithmetic) {
-        return static_cast<std::size_t>(std::find_if(contestants.begin(), contestants.end(), [&](const CostContestant& c) { return c.method == method && c.arithmetic == arithmetic; }) -
-                                        contestants.begin());
+        return static_cast<std::size_t>(
+            std::find_if(contestants.begin(), contestants.end(),
+                         [&](const CostContestant& c) { return c.method == method && c.arithmetic == arithmetic; }) -
+            contestants.begin());
     };
     std::vector<Row> rows;
     for (std::size_t i = 0; i < contestants.size(); ++i) {
         const CostContestant& c = contestants[i];
-        const std::size_t exact = find(c.method, "rational"), plain = std::min(find(c.method, "double"), find(c.method, "double kernel"));
-        Row row{kdop, c.method, c.arithmetic, c.guarantee, c.proven, ns[i] / static_cast<double>(sample.bvs.size()), ns[i] / ns[plain], 0, NAN, NAN};
+        const std::size_t exact = find(c.method, "rational"),
+                          plain = std::min(find(c.method, "double"), find(c.method, "double kernel"));
+        Row row{kdop,
+                c.method,
+                c.arithmetic,
+                c.guarantee,
+                c.proven,
+                ns[i] / static_cast<double>(sample.bvs.size()),
+                ns[i] / ns[plain],
+                0,
+                NAN,
+                NAN};
         std::size_t below = 0, measured = 0;
         double worst = 0;
         for (std::size_t b = 0; b < sample.bvs.size(); ++b) {
-            const double whole = radius(std::span(vertices).subspan(b * k, k)), ratio = radius(std::span(supports[i]).subspan(b * k, k)) / whole;
+            const double whole = radius(std::span(vertices).subspan(b * k, k)),
+                         ratio = radius(std::span(supports[i]).subspan(b * k, k)) / whole;
             if (whole > 0 && std::isfinite(ratio)) {
                 row.looseness += ratio;
                 ++measured;
             }
             for (std::size_t d = b * k; d < (b + 1) * k; ++d) {
-                const double value = exact < contestants.size() ? supports[exact][d] : vertices[d], width = vertices[d] + vertices[d ^ 1];
-                // The rational value is the least double above the exact one: below it is below the exact value, by a step or more.
-                if (exact < contestants.size() ? supports[i][d] < value : supports[i][d] < value - 1e-14 * std::abs(value)) {
+                const double value = exact < contestants.size() ? supports[exact][d] : vertices[d],
+                             width = vertices[d] + vertices[d ^ 1];
+                // The rational value is the least double above the exact one: below it is below the exact value, by a
+                // step or more.
+                if (exact < contestants.size() ? supports[i][d] < value
+                                               : supports[i][d] < value - 1e-14 * std::abs(value)) {
                     ++below;
                     if (width > 0)
                         worst = std::max(worst, (value - supports[i][d]) / width);
@@ -107,11 +126,13 @@ std::vector<Figure> figures_of(const std::vector<DualGap>& gaps)
     std::vector<Figure> figures;
     for (const DualGap& gap : gaps)
         if (gap.method == Method::best && range_of(gap) == "all")
-            figures.push_back({fmt::format("{}: mean gap of 'best' after 1 pass, %", gap.input), fmt::format("{:.3f}", gap.gap[1]), "< 1", gap.gap[1] < 1});
+            figures.push_back({fmt::format("{}: mean gap of 'best' after 1 pass, %", gap.input),
+                               fmt::format("{:.3f}", gap.gap[1]), "< 1", gap.gap[1] < 1});
     return figures;
 }
 
-void print_tables(const Input& input, const CostSample& sample, const std::vector<Row>& rows, const std::vector<DualGap>& gaps)
+void print_tables(const Input& input, const CostSample& sample, const std::vector<Row>& rows,
+                  const std::vector<DualGap>& gaps)
 {
     for (const std::string& line : input.report)
         fmt::print("{}\n", line);
@@ -121,10 +142,14 @@ void print_tables(const Input& input, const CostSample& sample, const std::vecto
         std::vector<std::vector<std::string>> lines;
         for (; first < rows.size() && rows[first].kdop == kdop; ++first) {
             const Row& r = rows[first];
-            lines.push_back({r.method, r.arithmetic, grouped(static_cast<std::size_t>(r.ns + 0.5)), fmt::format("{:.2f}", r.ratio_to_double), fmt::format("{:.4f}", r.looseness),
-                             r.below > 0 ? fmt::format("{:.0f} %", 100 * r.below) : "0", r.worst_below > 0 ? fmt::format("{:.0e}", r.worst_below) : "-", r.guarantee, r.pareto ? "*" : ""});
+            lines.push_back({r.method, r.arithmetic, grouped(static_cast<std::size_t>(r.ns + 0.5)),
+                             fmt::format("{:.2f}", r.ratio_to_double), fmt::format("{:.4f}", r.looseness),
+                             r.below > 0 ? fmt::format("{:.0f} %", 100 * r.below) : "0",
+                             r.worst_below > 0 ? fmt::format("{:.0e}", r.worst_below) : "-", r.guarantee,
+                             r.pareto ? "*" : ""});
         }
-        fmt::print("\n{}-DOP\n\n{}", kdop, table({"method", "arithmetic", "ns", "/ double", "ratio", "below", "worst", "proof", "opt"}, lines));
+        fmt::print("\n{}-DOP\n\n{}", kdop,
+                   table({"method", "arithmetic", "ns", "/ double", "ratio", "below", "worst", "proof", "opt"}, lines));
     }
     fmt::print("\nns: per BV, all k directions. / double: over plain double of the same method.\n"
                "ratio: bound radius / true radius, mean. below, worst: how often, and by how much of\n"
@@ -187,19 +212,43 @@ int cost(const CostOptions& options)
     } catch (const Interrupted&) { // whole k-DOPs and inputs are kept
     }
     const std::size_t kdops = done - std::min(done, 1 + others.size());
-    const Completeness completeness{1, 1, done == wanted, done == wanted ? "" : interrupted_after(kdops, options.kdops.size(), options.kdops.size() == 1 ? "k-DOP" : "k-DOPs")};
+    const Completeness completeness{1, 1, done == wanted,
+                                    done == wanted ? ""
+                                                   : interrupted_after(kdops, options.kdops.size(),
+                                                                       options.kdops.size() == 1 ? "k-DOP" : "k-DOPs")};
     std::vector<nlohmann::ordered_json> records;
     auto number = [](double x) { return std::isfinite(x) ? nlohmann::ordered_json(x) : nlohmann::ordered_json(); };
     for (const Row& r : rows)
-        records.push_back({{"experiment", "cost"}, {"input", input.name}, {"method", r.method}, {"arithmetic", r.arithmetic}, {"kdop", r.kdop}, {"ns_per_bound", r.ns},
-                           {"ratio_to_double", r.ratio_to_double}, {"mean_ratio", number(r.looseness)}, {"below_exact", number(r.below)}, {"worst_below", number(r.worst_below)},
-                           {"guarantee", r.guarantee}, {"pareto", r.pareto}});
+        records.push_back({{"experiment", "cost"},
+                           {"input", input.name},
+                           {"method", r.method},
+                           {"arithmetic", r.arithmetic},
+                           {"kdop", r.kdop},
+                           {"ns_per_bound", r.ns},
+                           {"ratio_to_double", r.ratio_to_double},
+                           {"mean_ratio", number(r.looseness)},
+                           {"below_exact", number(r.below)},
+                           {"worst_below", number(r.worst_below)},
+                           {"guarantee", r.guarantee},
+                           {"pareto", r.pareto}});
     for (const DualGap& gap : gaps)
         for (int passes = 0; passes < 5; ++passes)
-            records.push_back({{"experiment", "cost"}, {"input", gap.input}, {"method", name_of(gap.method)}, {"least_n", gap.least_n}, {"most_n", gap.most_n},
-                               {"passes", passes}, {"gap_percent", gap.gap[passes]}, {"bounds", gap.bounds}, {"frames_done", gap.frames}, {"frames", gap.frames}});
+            records.push_back({{"experiment", "cost"},
+                               {"input", gap.input},
+                               {"method", name_of(gap.method)},
+                               {"least_n", gap.least_n},
+                               {"most_n", gap.most_n},
+                               {"passes", passes},
+                               {"gap_percent", gap.gap[passes]},
+                               {"bounds", gap.bounds},
+                               {"frames_done", gap.frames},
+                               {"frames", gap.frames}});
     for (const Figure& f : figures_of(gaps))
-        records.push_back({{"experiment", "cost"}, {"figure", f.what}, {"measured", f.measured}, {"target", f.target}, {"reached", f.reached}});
+        records.push_back({{"experiment", "cost"},
+                           {"figure", f.what},
+                           {"measured", f.measured},
+                           {"target", f.target},
+                           {"reached", f.reached}});
     output.set(completeness);
     output.add_all(records);
     output.finish();

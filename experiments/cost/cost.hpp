@@ -3,10 +3,10 @@
 
 #include <functional>
 
-#include "experiments/input.hpp"
-#include "experiments/report/record_output.hpp"
 #include "cinch/bounds.hpp"
 #include "cinch/refit.hpp"
+#include "experiments/input.hpp"
+#include "experiments/report/record_output.hpp"
 
 namespace cinch {
 
@@ -19,8 +19,8 @@ struct CostOptions {
     OutputOptions output;
 };
 
-/// What accuracy costs in time: every method in every arithmetic, with looseness and what is guaranteed; and how far the dual
-/// evaluation stays from the optimum. Returns the exit status.
+/// What accuracy costs in time: every method in every arithmetic, with looseness and what is guaranteed; and how far
+/// the dual evaluation stays from the optimum. Returns the exit status.
 int cost(const CostOptions& options);
 
 /// BVs on which arithmetics are compared: one of each level, in one frame.
@@ -37,20 +37,21 @@ struct CostContestant {
     bool proven = false;
     std::function<void(std::span<double> supports)> bound;
 };
-/// Methods over the BV's own box (convex, eq12, limited) in scalar arithmetics from float to lazy exact numbers; "rational" is the
-/// exact value of each method.
+/// Methods over the BV's own box (convex, eq12, limited) in scalar arithmetics from float to lazy exact numbers;
+/// "rational" is the exact value of each method.
 std::vector<CostContestant> scalar_contestants(const CostSample& sample, int kdop);
 /// All methods with kernels, in float and double, proven and not.
 std::vector<CostContestant> kernel_contestants(const CostSample& sample, int kdop);
 
-/// How far D after so many passes lies above the optimum, in per cent of the bound's width: means over directions and frames.
+/// How far D after so many passes lies above the optimum, in per cent of the bound's width: means over directions and
+/// frames.
 struct DualGap {
     std::string input;
     Method method;
     std::size_t least_n, most_n; ///< BVs with so many simulation nodes
     std::size_t bounds;
-    double gap[5];               ///< after 0 to 4 passes
-    std::size_t frames = 0;      ///< of the clip
+    double gap[5];          ///< after 0 to 4 passes
+    std::size_t frames = 0; ///< of the clip
 };
 std::vector<DualGap> dual_gaps(const Input& input, std::size_t leaf);
 

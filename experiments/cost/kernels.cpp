@@ -15,7 +15,8 @@ template <class T> struct Prepared {
     KernelScratch<T> scratch;
 };
 
-template <class T> void add(const CostSample& sample, int kdop, const std::vector<ChosenKind>& kinds, Method method, std::vector<CostContestant>& all)
+template <class T> void add(const CostSample& sample, int kdop, const std::vector<ChosenKind>& kinds, Method method,
+                            std::vector<CostContestant>& all)
 {
     for (const Rounding rounding : {Rounding::plain, Rounding::proven}) {
         const auto prepared = std::make_shared<Prepared<T>>();
@@ -23,13 +24,15 @@ template <class T> void add(const CostSample& sample, int kdop, const std::vecto
         project(sample.maps, prepared->packed.rest, kdop, rounding, prepared->maps);
         const bool proven = rounding == Rounding::proven;
         const std::string name = sizeof(T) == 4 ? "float kernel" : "double kernel";
-        all.push_back({std::string(name_of(method)), proven ? name + ", proven" : name, proven ? "proven" : "none", proven,
-                       [prepared, rounding, kdop, bvs = sample.bvs](std::span<double> supports) {
-                           const auto k = static_cast<std::size_t>(kdop);
-                           const KernelInput<T> input{prepared->packed.bvs, prepared->packed.node, prepared->packed.value, &prepared->maps, rounding, 1};
-                           for (std::size_t i = 0; i < bvs.size(); ++i)
-                               bound_packed<T>(input, bvs[i], bvs[i] + 1, prepared->scratch, supports.subspan(i * k, k));
-                       }});
+        all.push_back(
+            {std::string(name_of(method)), proven ? name + ", proven" : name, proven ? "proven" : "none", proven,
+             [prepared, rounding, kdop, bvs = sample.bvs](std::span<double> supports) {
+                 const auto k = static_cast<std::size_t>(kdop);
+                 const KernelInput<T> input{
+                     prepared->packed.bvs, prepared->packed.node, prepared->packed.value, &prepared->maps, rounding, 1};
+                 for (std::size_t i = 0; i < bvs.size(); ++i)
+                     bound_packed<T>(input, bvs[i], bvs[i] + 1, prepared->scratch, supports.subspan(i * k, k));
+             }});
     }
 }
 
@@ -63,7 +66,8 @@ std::vector<DualGap> dual_gaps(const Input& input, std::size_t leaf)
         std::vector<Refitter> refits;
         for (int passes = 0; passes < 5; ++passes) {
             throw_if_interrupted();
-            refits.emplace_back(bvh, input.surface, RefitOptions{method, 6, Rounding::plain, Precision::float64, passes});
+            refits.emplace_back(bvh, input.surface,
+                                RefitOptions{method, 6, Rounding::plain, Precision::float64, passes});
         }
         for (std::size_t f = 0; f < input.clip.frame_count(); ++f) {
             throw_if_interrupted();

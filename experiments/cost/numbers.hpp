@@ -5,8 +5,8 @@
 
 namespace cinch {
 
-/// An unevaluated sum of two doubles, about 106 bits [Dekker 1971; Knuth's TwoSum; Ogita, Rump, Oishi 2005]. Rounds to nearest,
-/// about; no bound is proven with it.
+/// An unevaluated sum of two doubles, about 106 bits [Dekker 1971; Knuth's TwoSum; Ogita, Rump, Oishi 2005]. Rounds to
+/// nearest, about; no bound is proven with it.
 struct DoubleDouble {
     double high = 0, low = 0;
 
@@ -32,6 +32,9 @@ inline DoubleDouble operator*(const DoubleDouble& a, const DoubleDouble& b)
     const double p = a.high * b.high;
     return quick_sum(p, std::fma(a.high, b.high, -p) + (a.high * b.low + a.low * b.high));
 }
-inline bool operator<(const DoubleDouble& a, const DoubleDouble& b) { return a.high < b.high || (a.high == b.high && a.low < b.low); }
+inline bool operator<(const DoubleDouble& a, const DoubleDouble& b)
+{
+    return a.high < b.high || (a.high == b.high && a.low < b.low);
+}
 
 } // namespace cinch

@@ -20,7 +20,9 @@ namespace cinch {
 namespace {
 
 using Interval = CGAL::Interval_nt<false>;
-using Mpfr = boost::multiprecision::number<boost::multiprecision::mpfr_float_backend<38, boost::multiprecision::allocate_stack>, boost::multiprecision::et_off>; // 128 bits
+using Mpfr =
+    boost::multiprecision::number<boost::multiprecision::mpfr_float_backend<38, boost::multiprecision::allocate_stack>,
+                                  boost::multiprecision::et_off>; // 128 bits
 using Lazy = CGAL::Lazy_exact_nt<CGAL::Gmpq>;
 
 // The upper end as a double: the least one that is not below; for float the number itself.
@@ -43,7 +45,10 @@ template <class N> double about(const N& x) { return upper(x); }
 double about(const Interval& x) { return 0.5 * (x.inf() + x.sup()); }
 
 template <class N> N greater_of(const N& a, const N& b) { return a < b ? b : a; }
-Interval greater_of(const Interval& a, const Interval& b) { return {std::max(a.inf(), b.inf()), std::max(a.sup(), b.sup())}; }
+Interval greater_of(const Interval& a, const Interval& b)
+{
+    return {std::max(a.inf(), b.inf()), std::max(a.sup(), b.sup())};
+}
 template <class N> N less_of(const N& a, const N& b) { return -greater_of(N(-a), N(-b)); }
 template <class N> N magnitude(const N& x) { return greater_of(x, N(-x)); }
 Interval magnitude(const Interval& x) { return CGAL::abs(x); }
@@ -112,8 +117,8 @@ template <class N> void bound_in(const CostSample& sample, int kdop, Method meth
     }
 }
 
-// Proven extrema in double, rounded up to a grid of 2^-60 of the largest; from there on 128-bit integers, which are exact: weights
-// have 53 bits, extrema 61, sums of up to 2^11 nodes 11 more.
+// Proven extrema in double, rounded up to a grid of 2^-60 of the largest; from there on 128-bit integers, which are
+// exact: weights have 53 bits, extrema 61, sums of up to 2^11 nodes 11 more.
 void bound_on_grid(const CostSample& sample, int kdop, Method method, std::span<double> supports)
 {
     using Integer = __int128;
@@ -160,27 +165,35 @@ std::vector<CostContestant> scalar_contestants(const CostSample& sample, int kdo
     std::vector<CostContestant> all;
     for (const Method method : ladder_methods) {
         auto add = [&](const char* arithmetic, const char* guarantee, bool proven, auto&& bound) {
-            all.push_back({std::string(name_of(method)), arithmetic, guarantee, proven, std::forward<decltype(bound)>(bound)});
+            all.push_back(
+                {std::string(name_of(method)), arithmetic, guarantee, proven, std::forward<decltype(bound)>(bound)});
         };
         auto in_double = [&sample, kdop, method](Rounding rounding) {
             return [&sample, kdop, method, rounding, scratch = BoundScratch()](std::span<double> supports) mutable {
                 const auto k = static_cast<std::size_t>(kdop);
                 for (std::size_t i = 0; i < sample.bvs.size(); ++i)
-                    bound_box(sample.bvh.rest(sample.bvs[i]), sample.maps, method, rounding, axes_of(kdop), scratch, supports.subspan(i * k, k));
+                    bound_box(sample.bvh.rest(sample.bvs[i]), sample.maps, method, rounding, axes_of(kdop), scratch,
+                              supports.subspan(i * k, k));
             };
         };
-        add("float", "none", false, [&sample, kdop, method](std::span<double> s) { bound_in<float>(sample, kdop, method, s); });
+        add("float", "none", false,
+            [&sample, kdop, method](std::span<double> s) { bound_in<float>(sample, kdop, method, s); });
         add("double", "none", false, in_double(Rounding::plain));
         add("double, proven", "proven", true, in_double(Rounding::proven));
         add("interval", "proven", true, [&sample, kdop, method](std::span<double> s) {
             const CGAL::Protect_FPU_rounding<true> upward;
             bound_in<Interval>(sample, kdop, method, s);
         });
-        add("double-double", "1e-31", false, [&sample, kdop, method](std::span<double> s) { bound_in<DoubleDouble>(sample, kdop, method, s); });
-        add("MPFR 128", "1e-38", false, [&sample, kdop, method](std::span<double> s) { bound_in<Mpfr>(sample, kdop, method, s); });
-        add("int128 grid", "proven", true, [&sample, kdop, method](std::span<double> s) { bound_on_grid(sample, kdop, method, s); });
-        add("rational", "exact", true, [&sample, kdop, method](std::span<double> s) { bound_in<mpq_class>(sample, kdop, method, s); });
-        add("lazy exact", "exact", true, [&sample, kdop, method](std::span<double> s) { bound_in<Lazy>(sample, kdop, method, s); });
+        add("double-double", "1e-31", false,
+            [&sample, kdop, method](std::span<double> s) { bound_in<DoubleDouble>(sample, kdop, method, s); });
+        add("MPFR 128", "1e-38", false,
+            [&sample, kdop, method](std::span<double> s) { bound_in<Mpfr>(sample, kdop, method, s); });
+        add("int128 grid", "proven", true,
+            [&sample, kdop, method](std::span<double> s) { bound_on_grid(sample, kdop, method, s); });
+        add("rational", "exact", true,
+            [&sample, kdop, method](std::span<double> s) { bound_in<mpq_class>(sample, kdop, method, s); });
+        add("lazy exact", "exact", true,
+            [&sample, kdop, method](std::span<double> s) { bound_in<Lazy>(sample, kdop, method, s); });
     }
     return all;
 }

@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/fuzz/fuzz_case.hpp"
 #include "cinch/bounds.hpp"
 #include "cinch/surface.hpp"
+#include "experiments/fuzz/fuzz_case.hpp"
 
 namespace cinch {
 namespace {
@@ -77,7 +77,8 @@ FuzzCase fuzz_case_from_json(const std::string& text, const std::string& file)
         auto whole = [&](const char* field, std::uint64_t least, std::uint64_t most) {
             const json& value = root.at(field);
             if (!value.is_number_unsigned() || value.get<std::uint64_t>() < least || value.get<std::uint64_t>() > most)
-                throw InputError::in_file(file, fmt::format("field {}: {} is no whole number from {} to {}", field, value.dump(), least, most));
+                throw InputError::in_file(file, fmt::format("field {}: {} is no whole number from {} to {}", field,
+                                                            value.dump(), least, most));
             return value.get<std::uint64_t>();
         };
         const std::size_t n = whole("n", 1, 65535);

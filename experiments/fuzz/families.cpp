@@ -26,7 +26,11 @@ public:
     }
     std::size_t below(std::size_t n) { return static_cast<std::size_t>(bits() % n); }
     double uniform(double a, double b) { return a + (b - a) * static_cast<double>(bits() >> 11) * 0x1p-53; }
-    double signed_magnitude(int low, int high) { return (bits() % 2 ? 1 : -1) * std::ldexp(uniform(1, 2), low + static_cast<int>(below(static_cast<std::size_t>(high - low + 1)))); }
+    double signed_magnitude(int low, int high)
+    {
+        return (bits() % 2 ? 1 : -1) *
+               std::ldexp(uniform(1, 2), low + static_cast<int>(below(static_cast<std::size_t>(high - low + 1))));
+    }
 
 private:
     std::uint64_t state_;
@@ -102,7 +106,8 @@ void coincident_sums(Random& r, FuzzCase& c)
     const int bits = 2 + static_cast<int>(r.below(3));
     const std::size_t n = small_n(r);
     for (std::size_t j = 0; j < n; ++j)
-        add_weight(c, std::ldexp(static_cast<double>(r.below(2)), -bits), std::ldexp(static_cast<double>(r.below(std::size_t{1} << bits)), -bits));
+        add_weight(c, std::ldexp(static_cast<double>(r.below(2)), -bits),
+                   std::ldexp(static_cast<double>(r.below(std::size_t{1} << bits)), -bits));
     add_extrema(r, c);
 }
 
@@ -276,7 +281,8 @@ void scene_weights(Random& r, FuzzCase& c)
         std::vector<double> dense(nodes.size(), 0);
         const auto row = weights.of(v);
         for (std::size_t i = 0; i < row.node.size(); ++i)
-            dense[static_cast<std::size_t>(std::lower_bound(nodes.begin(), nodes.end(), row.node[i]) - nodes.begin())] = row.weight[i];
+            dense[static_cast<std::size_t>(std::lower_bound(nodes.begin(), nodes.end(), row.node[i]) - nodes.begin())] =
+                row.weight[i];
         c.weights.push_back(dense);
     }
     const double wildness = std::ldexp(1, -static_cast<int>(r.below(30)));

@@ -2,12 +2,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cinch/refit.hpp"
 #include "exact/check_space.hpp"
 #include "exact/verifier.hpp"
 #include "experiments/fuzz/fuzz_case.hpp"
 #include "toolkit/bounds/weight_space.hpp"
 #include "toolkit/deform/dyadic.hpp"
-#include "cinch/refit.hpp"
 
 namespace cinch {
 namespace {
@@ -29,13 +29,15 @@ std::string space_fault(const Case& problem, Defect defect)
     const WeightSpace space{seen.l, seen.h};
 
     static thread_local std::vector<std::pair<double, double>> scratch;
-    const double greatest = *std::max_element(seen.b.begin(), seen.b.end()), least = *std::min_element(seen.b.begin(), seen.b.end());
+    const double greatest = *std::max_element(seen.b.begin(), seen.b.end()),
+                 least = *std::min_element(seen.b.begin(), seen.b.end());
     const double second = second_largest(seen.b);
     double best = best_lambda(space, seen.b, scratch);
     if (defect == Defect::wrong_lambda)
         best = best - 0.5 * (greatest - best) - 1;
     const double middle = 0.5 * greatest + 0.5 * least;
-    const double convex = greatest, at_second = dual_bound(space, seen.b, second, rounding), at_best = dual_bound(space, seen.b, best, rounding);
+    const double convex = greatest, at_second = dual_bound(space, seen.b, second, rounding),
+                 at_best = dual_bound(space, seen.b, best, rounding);
     const double eq12 = std::min(convex, at_second), limited = std::min(eq12, at_best);
     const exact::Claim claims[] = {{"convex", convex},
                                    {"eq12", eq12},
@@ -70,7 +72,8 @@ void damage(Bvh& bvh, const DeformableSurface& surface, Defect defect)
 {
     if (defect == Defect::lower_h)
         bvh.h[0] -= weight_unit;
-    if (defect == Defect::small_box) { // build_bvh adds a step or two to the computed half; one ulp below it is too small
+    if (defect ==
+        Defect::small_box) { // build_bvh adds a step or two to the computed half; one ulp below it is too small
         double& half = bvh.bvs[0].box.half[0];
         double computed = 0;
         for (const Vec3& p : surface.mesh.vertices)
@@ -101,12 +104,14 @@ std::string surface_fault(const FuzzCase& problem, Defect defect)
         refit(seen, surface, problem.maps, {methods, problem.kdop, rounding, precision, passes, shape}, supports);
         return supports;
     };
-    auto fault_of = [&](Methods methods, Precision precision, std::span<const double> supports, RestShape shape = RestShape::aabb) -> std::string {
+    auto fault_of = [&](Methods methods, Precision precision, std::span<const double> supports,
+                        RestShape shape = RestShape::aabb) -> std::string {
         const exact::FrameVerdict verdict = verifier.check(problem.maps, methods, problem.kdop, supports, shape);
         if (verdict.examples.empty())
             return {};
         const exact::Violation& v = verdict.examples.front();
-        return name_of(methods) + " in " + std::string(name_of(precision)) + ", direction " + std::to_string(v.direction) + ", " + exact::name_of(v.statement) + ": " + v.detail;
+        return name_of(methods) + " in " + std::string(name_of(precision)) + ", direction " +
+               std::to_string(v.direction) + ", " + exact::name_of(v.statement) + ": " + v.detail;
     };
     std::uint32_t trial = 0;
     auto wanted = [&] { return ++trial == problem.trial || problem.trial == 0; };
@@ -119,31 +124,36 @@ std::string surface_fault(const FuzzCase& problem, Defect defect)
                     return fault;
                 for (std::size_t d = 0; d < looser.size(); ++d)
                     if (!(supports[d] <= looser[d]))
-                        return std::string(name_of(method)) + ", direction " + std::to_string(d) + ": looser than the method before it";
+                        return std::string(name_of(method)) + ", direction " + std::to_string(d) +
+                               ": looser than the method before it";
                 looser = supports;
             }
         }
         if (wanted())
             for (const Method method : ladder_methods)
-                if (std::string fault = fault_of(method, precision, bounds_of(method, precision, 1, RestShape::obb), RestShape::obb); !fault.empty())
+                if (std::string fault =
+                        fault_of(method, precision, bounds_of(method, precision, 1, RestShape::obb), RestShape::obb);
+                    !fault.empty())
                     return "oriented boxes: " + fault;
         for (const Method method : kernel_methods.without(ladder_methods)) {
             if (!wanted())
                 continue;
-            if (std::string fault = fault_of(method, precision, bounds_of(method, precision, problem.passes)); !fault.empty())
+            if (std::string fault = fault_of(method, precision, bounds_of(method, precision, problem.passes));
+                !fault.empty())
                 return fault;
         }
         if (!wanted())
             continue;
-        const auto both = bounds_of(Method::support | Method::linear, precision, 1), support = bounds_of(Method::support, precision, 1),
-                   linear = bounds_of(Method::linear, precision, 1);
+        const auto both = bounds_of(Method::support | Method::linear, precision, 1),
+                   support = bounds_of(Method::support, precision, 1), linear = bounds_of(Method::linear, precision, 1);
         for (std::size_t d = 0; d < k; ++d)
             if (both[d] != std::min(support[d], linear[d]))
                 return "support+linear, direction " + std::to_string(d) + ": not the lesser of the two";
     }
     for (const Method method : {Method::corners, Method::sphere, Method::vertices})
         if (wanted())
-            if (std::string fault = fault_of(method, Precision::float64, bounds_of(method, Precision::float64, 1)); !fault.empty())
+            if (std::string fault = fault_of(method, Precision::float64, bounds_of(method, Precision::float64, 1));
+                !fault.empty())
                 return fault;
     return {};
 }

@@ -13,31 +13,39 @@
 #include <tbb/parallel_for.h>
 #include <unistd.h>
 
+#include "cinch/surface.hpp"
 #include "experiments/fuzz/fuzz_state.hpp"
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/number.hpp"
 #include "experiments/report/provenance.hpp"
 #include "experiments/report/whole_file.hpp"
-#include "cinch/surface.hpp"
 
 namespace cinch {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Cases are run in blocks, which a kill loses and an interrupt waits for: long enough to occupy all threads, short enough for both.
+// Cases are run in blocks, which a kill loses and an interrupt waits for: long enough to occupy all threads, short
+// enough for both.
 constexpr std::uint64_t first_block = 64, largest_block = 8192;
-constexpr auto shortest = std::chrono::milliseconds(20), longest = std::chrono::milliseconds(80), between_saves = std::chrono::milliseconds(100);
+constexpr auto shortest = std::chrono::milliseconds(20), longest = std::chrono::milliseconds(80),
+               between_saves = std::chrono::milliseconds(100);
 
 const char* name_of(Defect defect)
 {
     switch (defect) {
-    case Defect::none: return "";
-    case Defect::no_rounding: return "no-rounding";
-    case Defect::wrong_lambda: return "wrong-lambda";
-    case Defect::lower_h: return "lower-h";
-    case Defect::sum_order: return "sum-order";
-    case Defect::small_box: return "small-box";
+    case Defect::none:
+        return "";
+    case Defect::no_rounding:
+        return "no-rounding";
+    case Defect::wrong_lambda:
+        return "wrong-lambda";
+    case Defect::lower_h:
+        return "lower-h";
+    case Defect::sum_order:
+        return "sum-order";
+    case Defect::small_box:
+        return "small-box";
     }
     return "";
 }
@@ -45,23 +53,27 @@ const char* name_of(Defect defect)
 class Session {
 public:
     explicit Session(const FuzzOptions& options)
-        : options_(options), threads_(options.threads > 0 ? options.threads : tbb::info::default_concurrency()), terminal_(isatty(STDERR_FILENO) == 1),
-          output_(options.output, provenance(threads_, options.seed))
+        : options_(options), threads_(options.threads > 0 ? options.threads : tbb::info::default_concurrency()),
+          terminal_(isatty(STDERR_FILENO) == 1), output_(options.output, provenance(threads_, options.seed))
     {
         if (options_.resume.empty())
             return;
         const Provenance from = provenance(threads_, options_.seed);
-        file_.emplace(options_.resume, FuzzSettings{from.version, from.commit, options_.seed, options_.family, options_.shard, options_.shards, name_of(options_.defect)});
+        file_.emplace(options_.resume, FuzzSettings{from.version, from.commit, options_.seed, options_.family,
+                                                    options_.shard, options_.shards, name_of(options_.defect)});
         state_ = file_->found();
         resumed_from_ = state_.next;
         seconds_before_ = state_.seconds;
         if (options_.cases && state_.next > *options_.cases)
-            throw InputError::in_file(options_.resume, fmt::format("field \"next\": {} cases are done, more than --cases {}", state_.next, *options_.cases));
+            throw InputError::in_file(
+                options_.resume,
+                fmt::format("field \"next\": {} cases are done, more than --cases {}", state_.next, *options_.cases));
     }
 
     int run()
     {
-        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads_));
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                        static_cast<std::size_t>(threads_));
         catch_interrupt();
         start_ = Clock::now();
         while (!interrupted() && !finished()) {
@@ -82,7 +94,8 @@ private:
 
     bool finished() const
     {
-        return (options_.cases && state_.next >= *options_.cases) || (options_.seconds && elapsed() >= *options_.seconds);
+        return (options_.cases && state_.next >= *options_.cases) ||
+               (options_.seconds && elapsed() >= *options_.seconds);
     }
 
     void run_block()
@@ -98,7 +111,9 @@ private:
         if (interrupted())
             return; // not all of it: a resumed run begins with it
         const auto took = Clock::now() - start;
-        block_ = took < shortest ? std::min(2 * block_, largest_block) : took > longest ? std::max(block_ / 2, first_block) : block_;
+        block_ = took < shortest  ? std::min(2 * block_, largest_block)
+                 : took > longest ? std::max(block_ / 2, first_block)
+                                  : block_;
         for (std::uint64_t i = 0; i < count; ++i)
             if (!faults[i].empty())
                 report(first + i);
@@ -125,18 +140,21 @@ private:
             std::filesystem::create_directories(options_.corpus, error);
             if (!std::filesystem::is_directory(options_.corpus, error))
                 throw InputError::in_file(options_.corpus, "is no folder and cannot be made one");
-            const auto path = std::filesystem::path(options_.corpus) / fmt::format("{}-{:x}.json", smallest.family, std::hash<std::string>{}(text));
+            const auto path = std::filesystem::path(options_.corpus) /
+                              fmt::format("{}-{:x}.json", smallest.family, std::hash<std::string>{}(text));
             write_whole(path, text + "\n");
             place = path.string();
         }
         if (terminal_)
             fmt::print(stderr, "\r\x1b[K");
-        nlohmann::ordered_json record{{"experiment", "fuzz"}, {"index", of_shard * options_.shards + options_.shard}, {"saved", place}};
+        nlohmann::ordered_json record{
+            {"experiment", "fuzz"}, {"index", of_shard * options_.shards + options_.shard}, {"saved", place}};
         record.update(nlohmann::ordered_json::parse(text));
         output_.add(record);
         if (!options_.output.records_only()) {
-            fmt::print("violated: case {} of family {}, shrunk to n = {}:\n  {}\n  {}\n", of_shard * options_.shards + options_.shard, found.family,
-                       smallest.nodes(), find_fault(smallest, options_.defect), place.empty() ? text : place);
+            fmt::print("violated: case {} of family {}, shrunk to n = {}:\n  {}\n  {}\n",
+                       of_shard * options_.shards + options_.shard, found.family, smallest.nodes(),
+                       find_fault(smallest, options_.defect), place.empty() ? text : place);
         }
         std::fflush(stdout);
     }
@@ -157,26 +175,36 @@ private:
         std::string left;
         if (options_.seconds)
             left = ", " + duration(std::max(0.0, *options_.seconds - now)) + " left";
-        fmt::print(stderr, "\r\x1b[K{} cases, {} per second, {} violations{}", grouped(state_.next),
-                   grouped(static_cast<std::size_t>(static_cast<double>(state_.next - resumed_from_) / std::max(now, 1e-3))), grouped(state_.violations), left);
+        fmt::print(
+            stderr, "\r\x1b[K{} cases, {} per second, {} violations{}", grouped(state_.next),
+            grouped(static_cast<std::size_t>(static_cast<double>(state_.next - resumed_from_) / std::max(now, 1e-3))),
+            grouped(state_.violations), left);
         std::fflush(stderr);
     }
 
     void summarise()
     {
         const bool is_complete = !interrupted() || finished();
-        output_.set({0, 0, is_complete, is_complete ? "" : fmt::format("interrupted after {} cases", grouped(state_.next))});
+        output_.set(
+            {0, 0, is_complete, is_complete ? "" : fmt::format("interrupted after {} cases", grouped(state_.next))});
         const Provenance from = provenance(threads_, options_.seed);
         const double seconds = state_.seconds;
-        output_.add({{"experiment", "fuzz"}, {"cases", state_.next}, {"violations", state_.violations}, {"seconds", seconds}, {"family", options_.family},
-                     {"shard", options_.shard}, {"shards", options_.shards}});
+        output_.add({{"experiment", "fuzz"},
+                     {"cases", state_.next},
+                     {"violations", state_.violations},
+                     {"seconds", seconds},
+                     {"family", options_.family},
+                     {"shard", options_.shard},
+                     {"shards", options_.shards}});
         output_.finish();
         if (options_.output.records_only())
             return;
         if (!is_complete)
             fmt::print("interrupted: not all that was asked for\n");
-        fmt::print("{} cases, {} violations\n{}, {} cases per second\n{}\n", grouped(state_.next), grouped(state_.violations), duration(seconds),
-                   grouped(static_cast<std::size_t>(static_cast<double>(state_.next) / std::max(seconds, 1e-3))), describe(from));
+        fmt::print("{} cases, {} violations\n{}, {} cases per second\n{}\n", grouped(state_.next),
+                   grouped(state_.violations), duration(seconds),
+                   grouped(static_cast<std::size_t>(static_cast<double>(state_.next) / std::max(seconds, 1e-3))),
+                   describe(from));
     }
 
     const FuzzOptions& options_;

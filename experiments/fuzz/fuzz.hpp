@@ -14,18 +14,19 @@ struct FuzzOptions {
     std::optional<double> seconds;      ///< a limit, if given
     std::optional<std::uint64_t> cases; ///< a limit, if given; of this shard, those of a resumed state included
     std::uint64_t seed = 0;
-    std::string family;      ///< empty: all in turn
+    std::string family; ///< empty: all in turn
     std::uint64_t shard = 0, shards = 1;
-    std::string resume;      ///< state file; empty: none
-    std::string corpus;      ///< where shrunk failures go
+    std::string resume; ///< state file; empty: none
+    std::string corpus; ///< where shrunk failures go
     int threads = 0;
     OutputOptions output;
     Defect defect = Defect::none;
 };
 
-/// Runs differential cases until a limit or an interrupt; none if a limit is 0. A state is saved at the start, ten times a second, and at the
-/// end. Throws InputError for a state of other settings, of more than `cases`, or that another process is using. Exit status: 0 no violation, 1 some, 130 interrupted without any.
-/// Case i of a seed is the same whatever the threads, shards and interruptions.
+/// Runs differential cases until a limit or an interrupt; none if a limit is 0. A state is saved at the start, ten
+/// times a second, and at the end. Throws InputError for a state of other settings, of more than `cases`, or that
+/// another process is using. Exit status: 0 no violation, 1 some, 130 interrupted without any. Case i of a seed is the
+/// same whatever the threads, shards and interruptions.
 int fuzz(const FuzzOptions& options);
 
 } // namespace cinch

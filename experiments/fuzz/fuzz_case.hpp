@@ -20,8 +20,8 @@ struct FuzzCase {
     std::vector<std::vector<double>> weights; ///< per vertex, dense over the nodes, dyadic with sum 1
     std::vector<AffineMap> maps;              ///< per node
     int kdop = 6;
-    std::uint32_t trial = 0;                  ///< of a surface case: which methods are tried, 1 to surface_trials; 0 for all
-    int passes = 1;                           ///< evaluations of the dual function in it
+    std::uint32_t trial = 0; ///< of a surface case: which methods are tried, 1 to surface_trials; 0 for all
+    int passes = 1;          ///< evaluations of the dual function in it
 
     bool is_surface() const { return !rest.empty(); }
     std::size_t nodes() const { return is_surface() ? maps.size() : space.l.size(); }

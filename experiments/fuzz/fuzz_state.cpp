@@ -21,14 +21,18 @@ using Json = nlohmann::ordered_json;
 
 Json to_json(const FuzzSettings& s)
 {
-    return {{"version", s.version}, {"commit", s.commit}, {"seed", s.seed}, {"family", s.family}, {"shard", s.shard}, {"shards", s.shards}, {"sabotage", s.sabotage}};
+    return {{"version", s.version}, {"commit", s.commit}, {"seed", s.seed},        {"family", s.family},
+            {"shard", s.shard},     {"shards", s.shards}, {"sabotage", s.sabotage}};
 }
 
 class Fields {
 public:
     Fields(const Json& root, const std::string& file) : root_(root), file_(file) {}
 
-    [[noreturn]] void fail(const char* name, const std::string& why) const { throw InputError::in_file(file_, fmt::format("field \"{}\": {}", name, why)); }
+    [[noreturn]] void fail(const char* name, const std::string& why) const
+    {
+        throw InputError::in_file(file_, fmt::format("field \"{}\": {}", name, why));
+    }
 
     const Json& at(const char* name) const
     {
@@ -64,7 +68,8 @@ public:
         const auto known = fuzz_families();
         std::set<std::string> out;
         for (const Json& entry : value)
-            if (!entry.is_string() || std::find(known.begin(), known.end(), entry.get_ref<const std::string&>()) == known.end())
+            if (!entry.is_string() ||
+                std::find(known.begin(), known.end(), entry.get_ref<const std::string&>()) == known.end())
                 fail(name, fmt::format("{} is no family of cases", shown(entry)));
             else
                 out.insert(entry);
@@ -100,7 +105,9 @@ FuzzState parse_fuzz_state(const std::string& text, const std::string& file, con
     const Json own = to_json(settings);
     for (const auto& [name, mine] : own.items())
         if (const Json& found = fields.at(name.c_str()); found != mine)
-            fields.fail(name.c_str(), fmt::format("{} there, {} in this run; use the same program and options, or another file", Fields::shown(found), Fields::shown(mine)));
+            fields.fail(name.c_str(),
+                        fmt::format("{} there, {} in this run; use the same program and options, or another file",
+                                    Fields::shown(found), Fields::shown(mine)));
     // Case i of the shard is case i · shards + shard of all, a number of 64 bits.
     const std::uint64_t most = (std::numeric_limits<std::uint64_t>::max() - settings.shard) / settings.shards;
     FuzzState state;
@@ -109,12 +116,14 @@ FuzzState parse_fuzz_state(const std::string& text, const std::string& file, con
     state.seconds = fields.seconds("seconds");
     state.shrunk = fields.families("shrunk");
     if (text != fuzz_state_text(settings, state)) // spacing, other fields, a field twice, the checksum
-        throw InputError::in_file(file, "was changed after 'cinch fuzz' wrote it, or is damaged; begin anew with another file");
+        throw InputError::in_file(
+            file, "was changed after 'cinch fuzz' wrote it, or is damaged; begin anew with another file");
     return state;
 }
 
 FuzzStateFile::FuzzStateFile(const std::string& file, const FuzzSettings& settings)
-    : file_(file), settings_(settings), lock_(file + ".lock", file, "another 'cinch fuzz' is using it; wait for it, or give each run a file of its own")
+    : file_(file), settings_(settings),
+      lock_(file + ".lock", file, "another 'cinch fuzz' is using it; wait for it, or give each run a file of its own")
 {
     std::error_code error;
     const auto there = std::filesystem::status(file, error);

@@ -14,9 +14,9 @@ namespace cinch {
 struct FuzzSettings {
     std::string version, commit; ///< of the program
     std::uint64_t seed = 0;
-    std::string family;          ///< empty: all in turn
+    std::string family; ///< empty: all in turn
     std::uint64_t shard = 0, shards = 1;
-    std::string sabotage;        ///< empty: none
+    std::string sabotage; ///< empty: none
 };
 
 /// What is done so far. Cases [0, next) of the shard are finished, each once.
@@ -28,8 +28,8 @@ struct FuzzState {
     bool operator==(const FuzzState&) const = default;
 };
 
-/// A state as the text of its file, and back: one line of JSON with the settings, the state and a checksum of them. Reading throws InputError, which names
-/// `file` and the field, for anything but what was written with these settings.
+/// A state as the text of its file, and back: one line of JSON with the settings, the state and a checksum of them.
+/// Reading throws InputError, which names `file` and the field, for anything but what was written with these settings.
 std::string fuzz_state_text(const FuzzSettings& settings, const FuzzState& state);
 FuzzState parse_fuzz_state(const std::string& text, const std::string& file, const FuzzSettings& settings);
 

@@ -7,7 +7,10 @@
 namespace cinch {
 namespace {
 
-template <class T> void erase_at(std::vector<T>& values, std::size_t i) { values.erase(values.begin() + static_cast<std::ptrdiff_t>(i)); }
+template <class T> void erase_at(std::vector<T>& values, std::size_t i)
+{
+    values.erase(values.begin() + static_cast<std::ptrdiff_t>(i));
+}
 
 FuzzCase without_node(FuzzCase c, std::size_t j)
 {
@@ -89,9 +92,11 @@ FuzzCase shrink(FuzzCase problem, Defect defect)
                 continue;
             int exponent = 0;
             const double mantissa = std::frexp(x, &exponent);
-            // Zero, one, an integer, a short mantissa: the first that still fails. Each is strictly simpler, so this ends.
-            for (const double simpler : {0.0, 1.0, std::round(x), std::ldexp(std::round(std::ldexp(mantissa, 4)), exponent - 4),
-                                         std::ldexp(std::round(std::ldexp(mantissa, 20)), exponent - 20)}) {
+            // Zero, one, an integer, a short mantissa: the first that still fails. Each is strictly simpler, so this
+            // ends.
+            for (const double simpler :
+                 {0.0, 1.0, std::round(x), std::ldexp(std::round(std::ldexp(mantissa, 4)), exponent - 4),
+                  std::ldexp(std::round(std::ldexp(mantissa, 20)), exponent - 20)}) {
                 if (simpler == x)
                     break;
                 FuzzCase smaller = problem;

@@ -6,18 +6,19 @@
 
 #include <Eigen/Core>
 
-#include "toolkit/deform/aligned.hpp"
-#include "cinch/surface.hpp"
 #include "cinch/bvh.hpp"
+#include "cinch/surface.hpp"
+#include "toolkit/deform/aligned.hpp"
 #include "toolkit/surface/triangle_mesh.hpp"
 
 namespace cinch {
 
-/// How the textbook bounds a transformed box: by its corners, as the paper defines it (Definition 1), or by its centre and axes, the
-/// shortcut that the paper mentions in §6.
+/// How the textbook bounds a transformed box: by its corners, as the paper defines it (Definition 1), or by its centre
+/// and axes, the shortcut that the paper mentions in §6.
 enum class TransformedBox { corners, axes };
 
-/// Eq. 12 as the paper's §5.4 lists it, by the book: an array of structs, scalar, no proof of its rounding. The yardstick.
+/// Eq. 12 as the paper's §5.4 lists it, by the book: an array of structs, scalar, no proof of its rounding. The
+/// yardstick.
 class Textbook {
 public:
     Textbook(const Bvh& bvh, std::size_t bv, std::span<const AffineMap> maps);
@@ -45,7 +46,8 @@ private:
     Eigen::Vector3d centre_, half_;
 };
 
-/// The optimal AABB of a deformed surface: every vertex, evaluated in SIMD with fused multiply-adds, in T. What the bound replaces.
+/// The optimal AABB of a deformed surface: every vertex, evaluated in SIMD with fused multiply-adds, in T. What the
+/// bound replaces.
 template <class T> class OptimalBox {
 public:
     OptimalBox(const DeformableSurface& surface, std::span<const AffineMap> maps);

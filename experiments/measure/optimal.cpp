@@ -14,8 +14,8 @@ HWY_BEFORE_NAMESPACE();
 namespace cinch::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-template <class T, class Influence>
-void optimal(const T* column, const T* position, std::span<const std::uint32_t> row, const Influence* influence, double* supports)
+template <class T, class Influence> void optimal(const T* column, const T* position, std::span<const std::uint32_t> row,
+                                                 const Influence* influence, double* supports)
 {
     using D = hn::CappedTag<T, 4>;
     constexpr std::size_t width = hn::MaxLanes(D()), vectors = 4 / width;
@@ -26,7 +26,8 @@ void optimal(const T* column, const T* position, std::span<const std::uint32_t> 
         high[i] = hn::Set(d, -std::numeric_limits<T>::infinity());
     }
     for (std::size_t k = 0; k + 1 < row.size(); ++k) {
-        const auto x = hn::Set(d, position[3 * k]), y = hn::Set(d, position[3 * k + 1]), z = hn::Set(d, position[3 * k + 2]);
+        const auto x = hn::Set(d, position[3 * k]), y = hn::Set(d, position[3 * k + 1]),
+                   z = hn::Set(d, position[3 * k + 2]);
         hn::Vec<D> v[vectors];
         for (std::size_t i = 0; i < vectors; ++i)
             v[i] = hn::Zero(d);
@@ -35,7 +36,9 @@ void optimal(const T* column, const T* position, std::span<const std::uint32_t> 
             const auto w = hn::Set(d, influence[e].weight);
             for (std::size_t i = 0; i < vectors; ++i) {
                 const T* c = m + i * width;
-                const auto image = hn::MulAdd(hn::Load(d, c), x, hn::MulAdd(hn::Load(d, c + 4), y, hn::MulAdd(hn::Load(d, c + 8), z, hn::Load(d, c + 12))));
+                const auto image = hn::MulAdd(
+                    hn::Load(d, c), x,
+                    hn::MulAdd(hn::Load(d, c + 4), y, hn::MulAdd(hn::Load(d, c + 8), z, hn::Load(d, c + 12))));
                 v[i] = hn::MulAdd(w, image, v[i]);
             }
         }
@@ -63,11 +66,13 @@ struct DoubleInfluence {
     std::uint32_t node;
     double weight;
 };
-void optimal_float(const float* column, const float* position, std::span<const std::uint32_t> row, const void* influence, double* supports)
+void optimal_float(const float* column, const float* position, std::span<const std::uint32_t> row,
+                   const void* influence, double* supports)
 {
     optimal(column, position, row, static_cast<const FloatInfluence*>(influence), supports);
 }
-void optimal_double(const double* column, const double* position, std::span<const std::uint32_t> row, const void* influence, double* supports)
+void optimal_double(const double* column, const double* position, std::span<const std::uint32_t> row,
+                    const void* influence, double* supports)
 {
     optimal(column, position, row, static_cast<const DoubleInfluence*>(influence), supports);
 }
@@ -81,7 +86,8 @@ namespace cinch {
 HWY_EXPORT(optimal_float);
 HWY_EXPORT(optimal_double);
 
-template <class T> OptimalBox<T>::OptimalBox(const DeformableSurface& surface, std::span<const AffineMap> maps) : row_(surface.weights.row)
+template <class T> OptimalBox<T>::OptimalBox(const DeformableSurface& surface, std::span<const AffineMap> maps)
+    : row_(surface.weights.row)
 {
     column_.resize(maps.size() * 16);
     for (std::size_t j = 0; j < maps.size(); ++j)

@@ -76,7 +76,8 @@ double log_slope(const std::vector<double>& size, const std::vector<double>& ns)
 void print(const std::vector<Figure>& figures)
 {
     for (const Figure& f : figures)
-        fmt::print("{:<44} {:>7}  target {:<7} {}\n", f.what, f.measured, f.target, f.reached ? "reached" : "FALLS SHORT");
+        fmt::print("{:<44} {:>7}  target {:<7} {}\n", f.what, f.measured, f.target,
+                   f.reached ? "reached" : "FALLS SHORT");
 }
 
 } // namespace cinch

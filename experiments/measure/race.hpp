@@ -10,8 +10,9 @@ namespace cinch {
 /// Keeps this thread on one core from now on, so that times compare.
 void pin_to_one_core();
 
-/// Median nanoseconds per call of each contestant. They take turns in short batches, so that a change of the machine's speed meets
-/// all of them alike. Together about `seconds` long; each runs at least three batches. Throws Interrupted between batches.
+/// Median nanoseconds per call of each contestant. They take turns in short batches, so that a change of the machine's
+/// speed meets all of them alike. Together about `seconds` long; each runs at least three batches. Throws Interrupted
+/// between batches.
 std::vector<double> race(const std::vector<std::function<void()>>& contestants, double seconds);
 
 /// Slope of log(ns) over log(size), least squares.

@@ -39,7 +39,9 @@ void Textbook::bound_by_corners()
         const SimulationNode& node = nodes_[influences_[j].node];
         Eigen::Vector3d corner[8];
         for (int c = 0; c < 8; ++c) {
-            const Eigen::Vector3d rest(centre_[0] + (c & 1 ? half_[0] : -half_[0]), centre_[1] + (c & 2 ? half_[1] : -half_[1]), centre_[2] + (c & 4 ? half_[2] : -half_[2]));
+            const Eigen::Vector3d rest(centre_[0] + (c & 1 ? half_[0] : -half_[0]),
+                                       centre_[1] + (c & 2 ? half_[1] : -half_[1]),
+                                       centre_[2] + (c & 4 ? half_[2] : -half_[2]));
             corner[c] = node.a * rest + node.t;
         }
         for (std::size_t d = 0; d < 6; ++d) {
@@ -58,8 +60,8 @@ void Textbook::bound_by_axes()
         const Eigen::Vector3d centre = node.a * centre_ + node.t;
         const Eigen::Vector3d axis[3] = {node.a.col(0) * half_[0], node.a.col(1) * half_[1], node.a.col(2) * half_[2]};
         for (std::size_t d = 0; d < 6; ++d)
-            extents_[j].of[d] = directions[d].dot(centre) + std::abs(directions[d].dot(axis[0])) + std::abs(directions[d].dot(axis[1])) +
-                                std::abs(directions[d].dot(axis[2]));
+            extents_[j].of[d] = directions[d].dot(centre) + std::abs(directions[d].dot(axis[0])) +
+                                std::abs(directions[d].dot(axis[1])) + std::abs(directions[d].dot(axis[2]));
     }
 }
 

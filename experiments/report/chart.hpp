@@ -21,7 +21,8 @@ struct Chart {
 /// Throws InputError if gnuplot, which draws the charts, is missing. `option`: what needs it.
 void require_gnuplot(const std::string& option);
 
-/// Charts below each other as one SVG document; at its top the note, if there is one. Throws InputError if gnuplot fails.
+/// Charts below each other as one SVG document; at its top the note, if there is one. Throws InputError if gnuplot
+/// fails.
 std::string svg(const std::vector<Chart>& charts, const std::string& note = {});
 
 } // namespace cinch

@@ -10,8 +10,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "experiments/report/interrupt.hpp"
 #include "cinch/surface.hpp"
+#include "experiments/report/interrupt.hpp"
 
 namespace cinch {
 
@@ -21,7 +21,8 @@ int run_child(const std::vector<std::string>& arguments, const std::filesystem::
     for (const std::string& argument : arguments)
         words.push_back(const_cast<char*>(argument.c_str()));
     words.push_back(nullptr);
-    const int out = open(output.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, 0644), in = open("/dev/null", O_RDONLY | O_CLOEXEC);
+    const int out = open(output.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, 0644),
+              in = open("/dev/null", O_RDONLY | O_CLOEXEC);
     if (out < 0 || in < 0)
         throw InputError::in_file(output.string(), "cannot be written");
     const pid_t parent = getpid(), child = fork();

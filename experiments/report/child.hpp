@@ -7,8 +7,9 @@
 
 namespace cinch {
 
-/// Runs this program with other arguments and waits. Its standard output goes to the file, its standard error is ours. An interrupt of
-/// this process ends it at once, and it never outlives this process. Returns its exit status, 128 + the signal if one ended it.
+/// Runs this program with other arguments and waits. Its standard output goes to the file, its standard error is ours.
+/// An interrupt of this process ends it at once, and it never outlives this process. Returns its exit status, 128 + the
+/// signal if one ended it.
 int run_child(const std::vector<std::string>& arguments, const std::filesystem::path& output);
 
 } // namespace cinch

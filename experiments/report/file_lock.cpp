@@ -12,7 +12,8 @@
 
 namespace cinch {
 
-FileLock::FileLock(const std::filesystem::path& lock, const std::string& of, const std::string& taken) : file_(open(lock.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0644))
+FileLock::FileLock(const std::filesystem::path& lock, const std::string& of, const std::string& taken)
+    : file_(open(lock.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0644))
 {
     if (file_ < 0)
         throw InputError::in_file(of, std::string("cannot be written: ") + std::strerror(errno));
@@ -20,7 +21,8 @@ FileLock::FileLock(const std::filesystem::path& lock, const std::string& of, con
         return;
     const int error = errno;
     close(file_);
-    throw InputError::in_file(of, error == EWOULDBLOCK ? taken : std::string("cannot be locked: ") + std::strerror(error));
+    throw InputError::in_file(of,
+                              error == EWOULDBLOCK ? taken : std::string("cannot be locked: ") + std::strerror(error));
 }
 
 FileLock::~FileLock() { close(file_); }

@@ -6,7 +6,8 @@
 
 namespace cinch {
 
-/// Held by one process at a time, and free again when it ends, however it ends. The file is made if it is not there, and stays.
+/// Held by one process at a time, and free again when it ends, however it ends. The file is made if it is not there,
+/// and stays.
 class FileLock {
 public:
     /// Throws InputError about `of`: "cannot be written" if there can be no lock, `taken` if another process holds it.

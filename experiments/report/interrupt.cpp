@@ -14,12 +14,14 @@
 namespace cinch {
 namespace {
 
-static_assert(std::atomic<int>::is_always_lock_free && std::atomic<std::int64_t>::is_always_lock_free); // handlers read and write these
+static_assert(std::atomic<int>::is_always_lock_free &&
+              std::atomic<std::int64_t>::is_always_lock_free); // handlers read and write these
 std::atomic<int> signal_met = 0;
 std::atomic<std::int64_t> met_ms = 0; ///< when
 std::atomic<bool> is_caught = false;
 
-/// No two of anybody's keystrokes are so close, but two signals of one wish may be: `timeout` sends one to the process and one to its group.
+/// No two of anybody's keystrokes are so close, but two signals of one wish may be: `timeout` sends one to the process
+/// and one to its group.
 constexpr std::int64_t one_wish_ms = 30;
 
 std::int64_t now_ms()
@@ -50,7 +52,8 @@ void on_signal(int signal)
     met_ms.compare_exchange_strong(never, now);
     const bool first = signal_met.compare_exchange_strong(none, signal);
     if (first)
-        say(isatty(STDERR_FILENO) == 1 ? "\r\x1b[Kcinch: stopping …\n" : "cinch: stopping …\n"); // over the progress bar
+        say(isatty(STDERR_FILENO) == 1 ? "\r\x1b[Kcinch: stopping …\n"
+                                       : "cinch: stopping …\n"); // over the progress bar
     if (!is_caught || (!first && now - met_ms > one_wish_ms))
         end_now(signal);
 }

@@ -5,8 +5,8 @@
 
 #include <zlib.h>
 
-#include "experiments/report/whole_file.hpp"
 #include "cinch/surface.hpp"
+#include "experiments/report/whole_file.hpp"
 
 namespace cinch {
 

@@ -7,7 +7,8 @@
 
 namespace cinch {
 
-/// A text file written line by line, compressed if its name ends in ".gz", and there when it is whole (whole_file.hpp). Errors throw InputError.
+/// A text file written line by line, compressed if its name ends in ".gz", and there when it is whole (whole_file.hpp).
+/// Errors throw InputError.
 class LineFile {
 public:
     explicit LineFile(const std::string& name);

@@ -149,9 +149,12 @@ std::span<const PaperFigure> paper_figures() { return figures; }
 
 const PaperFigure& paper_figure(std::string_view place, std::string_view row, std::string_view column)
 {
-    const auto found = std::find_if(std::begin(figures), std::end(figures), [&](const PaperFigure& f) { return f.place == place && f.row == row && f.column == column; });
+    const auto found = std::find_if(std::begin(figures), std::end(figures), [&](const PaperFigure& f) {
+        return f.place == place && f.row == row && f.column == column;
+    });
     if (found == std::end(figures))
-        throw std::out_of_range("the paper has no figure in " + std::string(place) + ", row " + std::string(row) + ", column " + std::string(column));
+        throw std::out_of_range("the paper has no figure in " + std::string(place) + ", row " + std::string(row) +
+                                ", column " + std::string(column));
     return *found;
 }
 

@@ -6,13 +6,13 @@
 
 namespace cinch {
 
-/// A figure that the paper prints: D. Steinemann, M. Otaduy, M. Gross, Tight and efficient surface bounds in meshless animation. Times
-/// are of its 3.4 GHz Pentium 4.
+/// A figure that the paper prints: D. Steinemann, M. Otaduy, M. Gross, Tight and efficient surface bounds in meshless
+/// animation. Times are of its 3.4 GHz Pentium 4.
 struct PaperFigure {
-    std::string_view place;  ///< "Table 1"
+    std::string_view place; ///< "Table 1"
     std::string_view row, column;
     double value;
-    std::string_view unit;   ///< empty: a ratio or a count
+    std::string_view unit; ///< empty: a ratio or a count
 };
 std::span<const PaperFigure> paper_figures();
 

@@ -11,7 +11,8 @@
 namespace cinch {
 
 Progress::Progress(std::string what, std::size_t steps)
-    : what_(std::move(what)), steps_(steps), terminal_(isatty(STDERR_FILENO) == 1), start_(std::chrono::steady_clock::now())
+    : what_(std::move(what)), steps_(steps), terminal_(isatty(STDERR_FILENO) == 1),
+      start_(std::chrono::steady_clock::now())
 {
     draw(0);
 }
@@ -35,7 +36,8 @@ void Progress::draw(std::size_t done) const
         const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
         left = ", " + duration(elapsed / static_cast<double>(done) * static_cast<double>(steps_ - done)) + " left";
     }
-    fmt::print(stderr, "\r\x1b[K{} [{}{}] {}/{}{}", what_, std::string(filled, '#'), std::string(width - filled, ' '), done, steps_, left);
+    fmt::print(stderr, "\r\x1b[K{} [{}{}] {}/{}{}", what_, std::string(filled, '#'), std::string(width - filled, ' '),
+               done, steps_, left);
     std::fflush(stderr);
 }
 

@@ -32,7 +32,9 @@ std::string compiler_name()
 // An argument as a shell takes it.
 std::string shell_word(const std::string& text)
 {
-    if (!text.empty() && text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%") == std::string::npos)
+    if (!text.empty() &&
+        text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%") ==
+            std::string::npos)
         return text;
     std::string out = "'";
     for (const char c : text)
@@ -53,19 +55,21 @@ std::string command_line()
 
 nlohmann::ordered_json to_json(const Provenance& p)
 {
-    return {{"command", p.command}, {"version", p.version}, {"commit", p.commit}, {"compiler", p.compiler}, {"flags", p.flags},
-            {"cpu", p.cpu}, {"simd_target", p.simd}, {"threads", p.threads}, {"seed", p.seed}};
+    return {{"command", p.command},   {"version", p.version}, {"commit", p.commit},
+            {"compiler", p.compiler}, {"flags", p.flags},     {"cpu", p.cpu},
+            {"simd_target", p.simd},  {"threads", p.threads}, {"seed", p.seed}};
 }
 
 Provenance provenance(int threads, std::uint64_t seed)
 {
-    return {command_line(), CINCH_VERSION, CINCH_COMMIT, compiler_name(), CINCH_FLAGS, cpu_name(), kernel_target(), threads, seed};
+    return {command_line(),  CINCH_VERSION, CINCH_COMMIT, compiler_name(), CINCH_FLAGS, cpu_name(),
+            kernel_target(), threads,       seed};
 }
 
 std::string describe(const Provenance& p)
 {
-    return fmt::format("cinch {} ({}), {}, seed {}\n{}, {} {}, {}", p.version, p.commit, p.compiler, p.seed, p.cpu, p.threads,
-                       p.threads == 1 ? "thread" : "threads", p.simd);
+    return fmt::format("cinch {} ({}), {}, seed {}\n{}, {} {}, {}", p.version, p.commit, p.compiler, p.seed, p.cpu,
+                       p.threads, p.threads == 1 ? "thread" : "threads", p.simd);
 }
 
 } // namespace cinch

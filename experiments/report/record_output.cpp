@@ -42,7 +42,8 @@ void print_csv(const std::vector<Json>& records)
     for (const auto& record : records) {
         std::string line;
         for (const std::string& name : names)
-            line += (line.empty() && name == names.front() ? "" : ",") + (record.contains(name) ? csv_field(record[name]) : "");
+            line += (line.empty() && name == names.front() ? "" : ",") +
+                    (record.contains(name) ? csv_field(record[name]) : "");
         fmt::print("{}\n", line);
     }
 }
@@ -85,7 +86,8 @@ void print_note(const Completeness& completeness)
         fmt::print("{}: what follows is of these alone\n\n", completeness.note);
 }
 
-RecordOutput::RecordOutput(const OutputOptions& options, const Provenance& from) : options_(options), from_(to_json(from))
+RecordOutput::RecordOutput(const OutputOptions& options, const Provenance& from)
+    : options_(options), from_(to_json(from))
 {
     if (!options.plot.empty()) {
         require_gnuplot("--plot");
@@ -103,7 +105,9 @@ void RecordOutput::add(const Json& record)
 {
     Json line = record;
     line.update(input_);
-    for (const auto& [name, value] : {std::pair("frames_done", Json(completeness_.frames_done)), std::pair("frames", Json(completeness_.frames)), std::pair("complete", Json(completeness_.complete))})
+    for (const auto& [name, value] :
+         {std::pair("frames_done", Json(completeness_.frames_done)), std::pair("frames", Json(completeness_.frames)),
+          std::pair("complete", Json(completeness_.complete))})
         if (!line.contains(name))
             line[name] = value;
     if (options_.csv || plot_ || page_)

@@ -21,7 +21,8 @@ struct OutputOptions {
     bool records_only() const { return json || csv; }
 };
 
-/// How much of what was asked for a result is of. In every record as "frames_done", "frames" and "complete", so that a part is never read as the whole.
+/// How much of what was asked for a result is of. In every record as "frames_done", "frames" and "complete", so that a
+/// part is never read as the whole.
 struct Completeness {
     std::size_t frames_done = 0, frames = 0; ///< 0 of 0 where a command has no frames
     bool complete = true;
@@ -35,16 +36,17 @@ Completeness completeness_in_frames(std::size_t done, std::size_t wanted);
 /// The note, where there is one, as the first line of a table on standard output.
 void print_note(const Completeness& completeness);
 
-/// The records of a command: JSON objects, each with its completeness and the provenance added. As JSON Lines they are printed as they come; CSV, charts and
-/// the page follow when all are there.
+/// The records of a command: JSON objects, each with its completeness and the provenance added. As JSON Lines they are
+/// printed as they come; CSV, charts and the page follow when all are there.
 class RecordOutput {
 public:
     /// To be made before measuring: throws InputError if gnuplot is missing, or a file cannot be written.
     RecordOutput(const OutputOptions& options, const Provenance& from);
-    /// The completeness of the records added from here on; a record's own fields of these names go before. The last one is also that of charts and page.
+    /// The completeness of the records added from here on; a record's own fields of these names go before. The last one
+    /// is also that of charts and page.
     void set(Completeness completeness) { completeness_ = std::move(completeness); }
-    /// Fields of the input that every record carries from now on; "partial" and "missing" are among them in any case: false and none,
-    /// until this says otherwise.
+    /// Fields of the input that every record carries from now on; "partial" and "missing" are among them in any case:
+    /// false and none, until this says otherwise.
     void describe(const nlohmann::ordered_json& input);
     void add(const nlohmann::ordered_json& record);
     void add_all(const std::vector<nlohmann::ordered_json>& records);

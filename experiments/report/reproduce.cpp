@@ -9,6 +9,7 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include "cinch/surface.hpp"
 #include "experiments/report/chart.hpp"
 #include "experiments/report/child.hpp"
 #include "experiments/report/file_lock.hpp"
@@ -19,7 +20,6 @@
 #include "experiments/report/results.hpp"
 #include "experiments/report/stages.hpp"
 #include "experiments/report/whole_file.hpp"
-#include "cinch/surface.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 
 namespace cinch {
@@ -28,7 +28,10 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-std::string command_of(const std::vector<std::string>& arguments) { return fmt::format("cinch {}", fmt::join(arguments, " ")); }
+std::string command_of(const std::vector<std::string>& arguments)
+{
+    return fmt::format("cinch {}", fmt::join(arguments, " "));
+}
 
 /// Whether the stored file is what this run would make, or all of what a quick run makes a part of.
 bool is_stored(const fs::path& file, const Stage& stage, const ReproduceOptions& options)
@@ -44,14 +47,22 @@ bool is_stored(const fs::path& file, const Stage& stage, const ReproduceOptions&
     if (closing.number("status") != 0 || closing.word("commit") != provenance(1, 0).commit)
         return false;
     const std::string by = closing.word("measured_by");
-    return by == command_of(arguments_of(stage, options.quick, options.seed)) || by == command_of(arguments_of(stage, false, options.seed));
+    return by == command_of(arguments_of(stage, options.quick, options.seed)) ||
+           by == command_of(arguments_of(stage, false, options.seed));
 }
 
 /// The last line of a file: what makes it whole.
-std::string closing_line(const Stage& stage, const ReproduceOptions& options, std::size_t lines, int status, double seconds)
+std::string closing_line(const Stage& stage, const ReproduceOptions& options, std::size_t lines, int status,
+                         double seconds)
 {
-    return json_line({{"experiment", "reproduce"}, {"stage", stage.name}, {"what", stage.what}, {"lines", lines}, {"status", status}, {"seconds", seconds},
-                      {"measured_by", command_of(arguments_of(stage, options.quick, options.seed))}, {"quick", options.quick},
+    return json_line({{"experiment", "reproduce"},
+                      {"stage", stage.name},
+                      {"what", stage.what},
+                      {"lines", lines},
+                      {"status", status},
+                      {"seconds", seconds},
+                      {"measured_by", command_of(arguments_of(stage, options.quick, options.seed))},
+                      {"quick", options.quick},
                       {"finished", fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr)))}},
                      provenance(1, options.seed));
 }
@@ -60,7 +71,8 @@ enum class Outcome { stored, check_failed, failed, interrupted };
 
 Outcome run(const Stage& stage, const ReproduceOptions& options)
 {
-    const fs::path file = fs::path(options.out) / (stage.name + ".jsonl"), part = fs::path(options.out) / (stage.name + ".part");
+    const fs::path file = fs::path(options.out) / (stage.name + ".jsonl"),
+                   part = fs::path(options.out) / (stage.name + ".part");
     const auto start = std::chrono::steady_clock::now();
     const int status = run_child(arguments_of(stage, options.quick, options.seed), part);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -107,7 +119,8 @@ std::vector<Damage> write_page(const fs::path& folder, const fs::path& page)
     whole.write(report_page(results, notes));
     whole.commit();
     for (const Damage& damage : notes.damage)
-        fmt::print(stderr, "cinch: {}\n", describe({(folder / damage.file).string(), damage.line, damage.what + "; the file is left out"}));
+        fmt::print(stderr, "cinch: {}\n",
+                   describe({(folder / damage.file).string(), damage.line, damage.what + "; the file is left out"}));
     return notes.damage;
 }
 
@@ -119,7 +132,8 @@ int reproduce(const ReproduceOptions& options)
     std::error_code error;
     fs::create_directories(options.out, error);
     // Two runs at once would take turns in spoiling each other's measurements.
-    const FileLock lock(fs::path(options.out) / ".lock", options.out, "another 'cinch reproduce' is writing there; wait for it, or use another --out");
+    const FileLock lock(fs::path(options.out) / ".lock", options.out,
+                        "another 'cinch reproduce' is writing there; wait for it, or use another --out");
     catch_interrupt();
     std::vector<Stage> wanted;
     double left = 0;
@@ -140,16 +154,22 @@ int reproduce(const ReproduceOptions& options)
     for (std::size_t i = 0; i < wanted.size() && !interrupted(); ++i) {
         const Stage& stage = wanted[i];
         // What is left in proportion to how long the others took, once they say something about this machine.
-        const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), done = planned - left;
-        fmt::print(stderr, "{}/{} {}: {}; {} left\n", i + 1, wanted.size(), stage.name, stage.what, duration(left * (done > 0.05 * planned ? elapsed / done : 1)));
+        const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
+                     done = planned - left;
+        fmt::print(stderr, "{}/{} {}: {}; {} left\n", i + 1, wanted.size(), stage.name, stage.what,
+                   duration(left * (done > 0.05 * planned ? elapsed / done : 1)));
         switch (run(stage, options)) {
-        case Outcome::stored: break;
+        case Outcome::stored:
+            break;
         case Outcome::check_failed:
             bad.push_back(stage.name + ": a check failed");
             refuted = true;
             break;
-        case Outcome::failed: bad.push_back(stage.name + ": 'cinch' failed, nothing is stored"); break;
-        case Outcome::interrupted: continue;
+        case Outcome::failed:
+            bad.push_back(stage.name + ": 'cinch' failed, nothing is stored");
+            break;
+        case Outcome::interrupted:
+            continue;
         }
         left -= options.quick ? stage.quick_seconds : stage.seconds;
     }
@@ -171,8 +191,10 @@ int report(const ReportOptions& options)
     const fs::path folder = options.folder;
     std::error_code error;
     const auto all = stages();
-    if (std::none_of(all.begin(), all.end(), [&](const Stage& stage) { return fs::exists(folder / (stage.name + ".jsonl"), error); }))
-        throw InputError::in_file(options.folder, "holds no results; 'cinch reproduce --out " + options.folder + "' makes them");
+    if (std::none_of(all.begin(), all.end(),
+                     [&](const Stage& stage) { return fs::exists(folder / (stage.name + ".jsonl"), error); }))
+        throw InputError::in_file(options.folder,
+                                  "holds no results; 'cinch reproduce --out " + options.folder + "' makes them");
     const fs::path page = options.page.empty() ? folder / "report.html" : fs::path(options.page);
     const auto damage = write_page(folder, page);
     fmt::print("{}\n", page.string());

@@ -12,9 +12,10 @@ struct ReproduceOptions {
     std::uint64_t seed = 0;
 };
 
-/// Runs every experiment that is not stored yet, each as a process of its own, and writes the page. An experiment's file appears only
-/// when it is whole, so a run that was stopped or killed continues where it was. Returns the exit status: 0 done, 1 a check of
-/// an experiment failed, 2 an experiment could not run or a stored result is damaged, 130 interrupted, with what is finished kept.
+/// Runs every experiment that is not stored yet, each as a process of its own, and writes the page. An experiment's
+/// file appears only when it is whole, so a run that was stopped or killed continues where it was. Returns the exit
+/// status: 0 done, 1 a check of an experiment failed, 2 an experiment could not run or a stored result is damaged, 130
+/// interrupted, with what is finished kept.
 int reproduce(const ReproduceOptions& options);
 
 struct ReportOptions {

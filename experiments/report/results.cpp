@@ -33,12 +33,23 @@ template <class Better> Traced extreme(const std::vector<Traced>& all, Better be
 }
 
 // What the page reads and no two commands call by the same name with another type; anything else may be what it likes.
-constexpr std::array texts{"experiment", "command", "commit", "version", "cpu", "simd_target", "method", "precision", "input", "motion", "arithmetic", "guarantee", "scene", "backend",
-                           "file", "figure", "stage", "finished"};
-constexpr std::array numbers{"seed", "threads", "n", "vertices", "ns_per_bound", "level", "bvs", "mean_ratio", "max_ratio", "kdop",
-                             "below_exact", "ratio_to_double", "frames", "bodies", "evaluate_ms", "update_ms", "query_ms", "total_ms", "pairs", "pairs_differing", "megabytes_per_body",
-                             "mean_vertices", "mean_bounds", "mean_box_tests", "passes", "gap_percent", "least_n", "most_n", "bounds", "proven", "violated", "seconds", "lines", "status"};
-constexpr std::array counts{"seed", "threads", "level", "bvs", "kdop", "frames", "bodies", "vertices", "bounds", "proven", "violated", "lines", "status"};
+constexpr std::array texts{"experiment", "command",   "commit", "version", "cpu",        "simd_target",
+                           "method",     "precision", "input",  "motion",  "arithmetic", "guarantee",
+                           "scene",      "backend",   "file",   "figure",  "stage",      "finished"};
+constexpr std::array numbers{"seed",          "threads",         "n",
+                             "vertices",      "ns_per_bound",    "level",
+                             "bvs",           "mean_ratio",      "max_ratio",
+                             "kdop",          "below_exact",     "ratio_to_double",
+                             "frames",        "bodies",          "evaluate_ms",
+                             "update_ms",     "query_ms",        "total_ms",
+                             "pairs",         "pairs_differing", "megabytes_per_body",
+                             "mean_vertices", "mean_bounds",     "mean_box_tests",
+                             "passes",        "gap_percent",     "least_n",
+                             "most_n",        "bounds",          "proven",
+                             "violated",      "seconds",         "lines",
+                             "status"};
+constexpr std::array counts{"seed",     "threads", "level",  "bvs",      "kdop",  "frames", "bodies",
+                            "vertices", "bounds",  "proven", "violated", "lines", "status"};
 constexpr std::array signed_numbers{"gap_percent"}; // the others are counts, sizes and times
 constexpr std::array required{"experiment", "command", "commit", "seed", "cpu"};
 
@@ -59,7 +70,8 @@ std::string fault(const Json& record)
         if (record.contains(name) && record[name].is_number() && !record[name].is_number_unsigned())
             return fmt::format("\"{}\" is {}, which is no count", name, record[name].dump());
     for (const char* name : numbers)
-        if (record.contains(name) && record[name].is_number() && record[name].get<double>() < 0 && std::find(signed_numbers.begin(), signed_numbers.end(), std::string_view(name)) == signed_numbers.end())
+        if (record.contains(name) && record[name].is_number() && record[name].get<double>() < 0 &&
+            std::find(signed_numbers.begin(), signed_numbers.end(), std::string_view(name)) == signed_numbers.end())
             return fmt::format("\"{}\" is negative", name);
     return "";
 }
@@ -142,7 +154,8 @@ Traced Results::number(const Json& fields, const char* field) const
 
 std::string describe(const Damage& damage)
 {
-    return damage.line ? fmt::format("{}:{}: {}", damage.file, damage.line, damage.what) : fmt::format("{}: {}", damage.file, damage.what);
+    return damage.line ? fmt::format("{}:{}: {}", damage.file, damage.line, damage.what)
+                       : fmt::format("{}: {}", damage.file, damage.what);
 }
 
 bool is_view(const Record& record)
@@ -150,8 +163,12 @@ bool is_view(const Record& record)
     if (record.word("experiment") != "view" || !record.fields.contains("view") || !record.fields["view"].is_object())
         return false;
     const Json& view = record.fields["view"];
-    auto all = [&](std::initializer_list<const char*> fields, auto&& is) { return std::all_of(fields.begin(), fields.end(), [&](const char* f) { return view.contains(f) && is(view[f]); }); };
-    return all({"title", "text", "scene"}, [](const Json& j) { return j.is_string(); }) && all({"positions", "corners", "bounds", "first", "bvs"}, [](const Json& j) { return j.is_object(); });
+    auto all = [&](std::initializer_list<const char*> fields, auto&& is) {
+        return std::all_of(fields.begin(), fields.end(),
+                           [&](const char* f) { return view.contains(f) && is(view[f]); });
+    };
+    return all({"title", "text", "scene"}, [](const Json& j) { return j.is_string(); }) &&
+           all({"positions", "corners", "bounds", "first", "bvs"}, [](const Json& j) { return j.is_object(); });
 }
 
 bool is_closing(const Record& record) { return record.fields.contains("stage") && record.fields.contains("lines"); }
@@ -195,7 +212,8 @@ std::vector<Record> read_results(const std::filesystem::path& file, std::vector<
         if (is_closing(record)) {
             closed = true;
             const double said = record.number("lines"), found = static_cast<double>(line - 1);
-            const std::string_view whole = record.text, body = whole.substr(0, whole.size() - std::min(whole.size(), seal_bytes));
+            const std::string_view whole = record.text,
+                                   body = whole.substr(0, whole.size() - std::min(whole.size(), seal_bytes));
             if (said != found)
                 bad(said > found ? "lines are missing before it" : "there are more lines before it than it says");
             else if (!whole.substr(body.size()).starts_with(seal_begin))

@@ -73,12 +73,13 @@ struct Damage {
 };
 std::string describe(const Damage& damage);
 
-/// A file as `cinch reproduce` stores it: lines, each ended, and a closing line, a JSON object, that becomes their checksum's place too.
+/// A file as `cinch reproduce` stores it: lines, each ended, and a closing line, a JSON object, that becomes their
+/// checksum's place too.
 std::string sealed(const std::string& lines, std::string_view closing);
 
-/// Reads one file as `cinch reproduce` stores it: JSON Lines, each with its provenance, and a closing line that says how many there are and has a
-/// checksum of every byte before it.
-/// Returns no record at all if anything is wrong with it: what is left of a damaged file would pass for the whole.
+/// Reads one file as `cinch reproduce` stores it: JSON Lines, each with its provenance, and a closing line that says
+/// how many there are and has a checksum of every byte before it. Returns no record at all if anything is wrong with
+/// it: what is left of a damaged file would pass for the whole.
 std::vector<Record> read_results(const std::filesystem::path& file, std::vector<Damage>& damage);
 
 /// What `view_sections` draws, and is too large to stand on a page twice.

@@ -20,7 +20,8 @@ std::vector<std::string> words(const std::string& text)
 std::vector<Stage> stages()
 {
     std::vector<Stage> all;
-    auto stage = [&](const std::string& name, const std::string& what, double seconds, const std::string& arguments, double quick_seconds, const std::string& quick) {
+    auto stage = [&](const std::string& name, const std::string& what, double seconds, const std::string& arguments,
+                     double quick_seconds, const std::string& quick) {
         all.push_back({name, what, words(arguments), words(quick), seconds, quick_seconds});
     };
     stage("scaling", "time of one bound (Table 1)", 60, "scaling --seconds 3", 12, "scaling --seconds 0.2");
@@ -28,11 +29,13 @@ std::vector<Stage> stages()
     stage("tightness", "tightness of the pulled brain (Figs. 1 and 5)", 400, "tightness brain-pull --frames 12", 25,
           "tightness brain-pull --frames 2 --leaf 256 --sweep 65 --methods sphere,eq12,limited,best");
 #endif
-    // Contacts come and go over all frames, so a quick run leaves out peers and rounds, and spatial hashing where that takes long, but no frame.
+    // Contacts come and go over all frames, so a quick run leaves out peers and rounds, and spatial hashing where that
+    // takes long, but no frame.
     const std::string few = " --rounds 1 --backends cinch,cinch-full,refit-16,refit-1,eq12-aabb,eq12-obb-14";
     for (int ring = 1; ring <= 8; ++ring) {
         const bool large = ring == 3 || ring == 4 || ring >= 7;
-        const std::string scene = fmt::format("santa-ring-{}", ring), what = fmt::format("collisions, scene {} (Tables 2 to 4)", ring);
+        const std::string scene = fmt::format("santa-ring-{}", ring),
+                          what = fmt::format("collisions, scene {} (Tables 2 to 4)", ring);
         if (large)
             stage(scene, what, 170, "collide " + scene, 24, ring == 3 ? "collide " + scene + few : "");
         else
@@ -41,13 +44,18 @@ std::vector<Stage> stages()
     stage("fishes", "collisions of 24 fishes (Fig. 7)", 200, "collide fishes", 30, "collide fishes --frames 20" + few);
 #ifdef CINCH_EXACT
     stage("cost", "what accuracy costs", 90, "cost", 12, "cost --kdops 6 --seconds 0.3 --leaf 64 --this-input-only");
-    stage("verify", "every bound of the pulled brain, proven exactly", 60, "verify brain-pull --frames 4", 12, "verify brain-pull --frames 1 --leaf 64");
-    stage("verify-lazy", "the bounds that collision reads, proven exactly", 60, "verify santa-ring-1 --update lazy", 12, "verify santa-ring-1 --update lazy --frames 6");
-    const std::string cases = "003_n1_n1 010_generic_n7 017_generic_n14 024_lzero_n10 031_narrow_n9 038_hyper_n5 045_hyperdeg_n4 052_grid_n2 059_grid_n10 066_lh_fixed_n8 073_infeasible_suml_n8 "
-                              "080_single_point_n2 087_fewslack_n5 094_simplex01_n12 101_leaf_rounded_n6 108_ulp_slack_n2 115_large_generic_n100 122_large_narrow_n100 129_large_infeasible_n200";
+    stage("verify", "every bound of the pulled brain, proven exactly", 60, "verify brain-pull --frames 4", 12,
+          "verify brain-pull --frames 1 --leaf 64");
+    stage("verify-lazy", "the bounds that collision reads, proven exactly", 60, "verify santa-ring-1 --update lazy", 12,
+          "verify santa-ring-1 --update lazy --frames 6");
+    const std::string cases = "003_n1_n1 010_generic_n7 017_generic_n14 024_lzero_n10 031_narrow_n9 038_hyper_n5 "
+                              "045_hyperdeg_n4 052_grid_n2 059_grid_n10 066_lh_fixed_n8 073_infeasible_suml_n8 "
+                              "080_single_point_n2 087_fewslack_n5 094_simplex01_n12 101_leaf_rounded_n6 "
+                              "108_ulp_slack_n2 115_large_generic_n100 122_large_narrow_n100 129_large_infeasible_n200";
     stage("corners", "true corners and maxima of the reference cases", 2, "corners " + cases, 2, "corners " + cases);
 #endif
-    stage("views", "views of deforming surfaces (Figs. 1, 6 and 7)", 60, "view", 15, "view brain-pull --frames 16 --levels 6 --kdop 14 --bits 14 --camera -55,14");
+    stage("views", "views of deforming surfaces (Figs. 1, 6 and 7)", 60, "view", 15,
+          "view brain-pull --frames 16 --levels 6 --kdop 14 --bits 14 --camera -55,14");
     return all;
 }
 

@@ -20,22 +20,23 @@ struct ViewRequest {
     std::size_t levels = 8;  ///< of the BVH that are kept, the root's first
     int kdop = 6;            ///< greatest k on offer: 6 has 6; 14 has 6, 14; 18 has 6, 18; 26 all four
     std::vector<Method> methods = tightest_first(all_methods.without(Method::vertices));
-    int bits = 16;           ///< of the grid that positions are rounded to; 8 to 16
-    std::size_t nodes = 0;   ///< simulation nodes, where they are sampled; 0: as usual
+    int bits = 16;         ///< of the grid that positions are rounded to; 8 to 16
+    std::size_t nodes = 0; ///< simulation nodes, where they are sampled; 0: as usual
     std::uint64_t seed = 0;
-    bool partial = false;    ///< of a character: what is modelled, see InputOptions
+    bool partial = false; ///< of a character: what is modelled, see InputOptions
 
     Method method = Method::best; ///< shown first
     std::size_t level = 3;
-    double time = 1;              ///< of the clip's length: the frame
+    double time = 1;               ///< of the clip's length: the frame
     std::string surface = "solid"; ///< or "glass", "hidden"
     bool show_nodes = false, show_bounds = true;
     double azimuth = 35, elevation = 20; ///< degrees; of the camera, from +x towards +y, and up
 };
 
-/// One JSON object: surfaces, frames, simulation nodes, bounds by every method and intersecting triangles, as integers on a grid
-/// (grid.hpp), packed (pack.hpp). The bounds contain the vertices on the grid, exactly. Ctrl-C, where it is caught, leaves out
-/// methods that are not done yet; before there is one, Interrupted is thrown. Throws InputError for what cannot be loaded or has vertices that are not finite.
+/// One JSON object: surfaces, frames, simulation nodes, bounds by every method and intersecting triangles, as integers
+/// on a grid (grid.hpp), packed (pack.hpp). The bounds contain the vertices on the grid, exactly. Ctrl-C, where it is
+/// caught, leaves out methods that are not done yet; before there is one, Interrupted is thrown. Throws InputError for
+/// what cannot be loaded or has vertices that are not finite.
 nlohmann::ordered_json make_view(const ViewRequest& request);
 
 /// The <section> elements with their data, before them style and script (three.js in-lined once). No network.

@@ -17,8 +17,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "toolkit/simulate/frame_file.hpp"
 #include "cinch/surface.hpp"
+#include "toolkit/simulate/frame_file.hpp"
 
 namespace cinch {
 namespace {
@@ -27,7 +27,10 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t buffer_bytes = 1 << 16;
 
-std::string because(const std::string& what, int error) { return what + ": " + std::strerror(error) + (error == ENOSPC || error == EDQUOT ? "; the disk is full" : ""); }
+std::string because(const std::string& what, int error)
+{
+    return what + ": " + std::strerror(error) + (error == ENOSPC || error == EDQUOT ? "; the disk is full" : "");
+}
 
 /// What this process reads and writes, as absolute paths: nothing may be both, or written twice.
 struct Known {
@@ -97,7 +100,8 @@ bool begins_with(int file, std::uint64_t bytes, std::uint64_t expected, WholeFil
     std::string part(buffer_bytes, '\0');
     std::uint64_t sum = checksum({}), at = 0;
     while (at < bytes) {
-        const ssize_t got = pread(file, part.data(), std::min<std::uint64_t>(part.size(), bytes - at), static_cast<off_t>(at));
+        const ssize_t got =
+            pread(file, part.data(), std::min<std::uint64_t>(part.size(), bytes - at), static_cast<off_t>(at));
         if (got < 0 && errno == EINTR)
             continue;
         if (got <= 0)
@@ -134,7 +138,8 @@ bool WholeFile::open_directly(const fs::path& name)
         file_ = open(name.c_str(), O_WRONLY | O_CLOEXEC);
     } else {
         for (const int standard : {STDOUT_FILENO, STDERR_FILENO}) // its place is where this stream stands in the file
-            if (struct stat open = {}; file_ < 0 && fstat(standard, &open) == 0 && open.st_dev == there.st_dev && open.st_ino == there.st_ino)
+            if (struct stat open = {};
+                file_ < 0 && fstat(standard, &open) == 0 && open.st_dev == there.st_dev && open.st_ino == there.st_ino)
                 file_ = fcntl(standard, F_DUPFD_CLOEXEC, 0);
         if (file_ < 0)
             return false;
@@ -183,7 +188,8 @@ WholeFile::WholeFile(const fs::path& name) : WholeFile()
     std::string part;
     for (int tries = 0; file_ < 0 && (tries == 0 || errno == EEXIST) && tries < 100; ++tries) {
         part = beside + "." + random_letters() + ".part";
-        file_ = open(part.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666); // what the umask leaves, as for every new file
+        file_ = open(part.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC,
+                     0666); // what the umask leaves, as for every new file
     }
     if (file_ < 0)
         throw InputError::in_file(name_, because("cannot be written, nor any file beside it", errno));
@@ -227,15 +233,17 @@ WholeFile WholeFile::continued(const fs::path& name, std::uint64_t bytes, std::u
         if (whole >= 0)
             close(whole);
         if (!fits)
-            throw InputError::in_file(out.name_, fmt::format("does not have the {} bytes that are to be continued", bytes));
+            throw InputError::in_file(out.name_,
+                                      fmt::format("does not have the {} bytes that are to be continued", bytes));
     }
     out.keep_mode();
     return out;
 }
 
 WholeFile::WholeFile(WholeFile&& other) noexcept
-    : name_(std::move(other.name_)), target_(std::move(other.target_)), part_(std::exchange(other.part_, {})), buffer_(std::move(other.buffer_)), file_(std::exchange(other.file_, -1)),
-      slot_(std::exchange(other.slot_, -1)), is_registered_(std::exchange(other.is_registered_, false)), is_kept_(other.is_kept_)
+    : name_(std::move(other.name_)), target_(std::move(other.target_)), part_(std::exchange(other.part_, {})),
+      buffer_(std::move(other.buffer_)), file_(std::exchange(other.file_, -1)), slot_(std::exchange(other.slot_, -1)),
+      is_registered_(std::exchange(other.is_registered_, false)), is_kept_(other.is_kept_)
 {
 }
 
@@ -304,7 +312,8 @@ void WholeFile::commit()
     part_.clear();
     leave();
     hide_from_handler(std::exchange(slot_, -1));
-    if (const int folder = open(fs::path(target_).parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); folder >= 0) {
+    if (const int folder = open(fs::path(target_).parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+        folder >= 0) {
         fsync(folder); // the name; where that cannot be done, it comes when the system sees fit
         close(folder);
     }

@@ -68,9 +68,10 @@ void mark_pareto(std::vector<Row>& rows)
 {
     for (Row& row : rows)
         row.pareto = row.failure.empty() && std::none_of(rows.begin(), rows.end(), [&](const Row& other) {
-            return other.failure.empty() && other.energy == row.energy && other.error <= row.error && other.seconds_per_second <= row.seconds_per_second &&
-                   (other.error < row.error || other.seconds_per_second < row.seconds_per_second);
-        });
+                         return other.failure.empty() && other.energy == row.energy && other.error <= row.error &&
+                                other.seconds_per_second <= row.seconds_per_second &&
+                                (other.error < row.error || other.seconds_per_second < row.seconds_per_second);
+                     });
 }
 
 } // namespace
@@ -93,8 +94,10 @@ int cost_simulation(const CostSimulationOptions& options)
     const double implicit_steps[] = {frame, frame / 2, frame / 4, frame / 8, frame / 16, frame / 32};
     const double explicit_shares[] = {0.6, 0.3, 0.15};
     std::size_t done = 0;
-    const std::size_t wanted = 2 * (1 + std::size(implicit_steps) + std::size(explicit_shares)) + 1; // runs, and the steps
-    const std::pair<const char*, ElasticSpec::Model> energies[] = {{"neo-hookean", ElasticSpec::Model::neo_hookean}, {"stvk", ElasticSpec::Model::stvk}};
+    const std::size_t wanted =
+        2 * (1 + std::size(implicit_steps) + std::size(explicit_shares)) + 1; // runs, and the steps
+    const std::pair<const char*, ElasticSpec::Model> energies[] = {{"neo-hookean", ElasticSpec::Model::neo_hookean},
+                                                                   {"stvk", ElasticSpec::Model::stvk}};
     StepFigures steps;
     try {
         Progress progress("simulating", wanted);
@@ -112,8 +115,12 @@ int cost_simulation(const CostSimulationOptions& options)
             progress.done(++done);
             auto measure = [&](const char* integrator, const Scene& how, double step) {
                 const Outcome outcome = or_leave([how, file = found.file] { return run(how, file); });
-                rows.push_back({name, integrator, step > 0 ? step : scene.duration_s * static_cast<double>(scene.bodies.size()) / static_cast<double>(std::max<std::size_t>(outcome.steps, 1)),
-                                error_of(outcome, reference, start), outcome.seconds / scene.duration_s, outcome.steps, outcome.failure});
+                rows.push_back({name, integrator,
+                                step > 0 ? step
+                                         : scene.duration_s * static_cast<double>(scene.bodies.size()) /
+                                               static_cast<double>(std::max<std::size_t>(outcome.steps, 1)),
+                                error_of(outcome, reference, start), outcome.seconds / scene.duration_s, outcome.steps,
+                                outcome.failure});
                 progress.done(++done);
             };
             if (!reference.failure.empty()) {
@@ -139,16 +146,31 @@ int cost_simulation(const CostSimulationOptions& options)
     mark_pareto(rows);
     const bool is_complete = !interrupted() || !steps.rows.empty();
     const auto frames = static_cast<std::size_t>(scene.duration_s / scene.frame_s + 0.5);
-    const Completeness completeness{frames, frames, is_complete, is_complete ? "" : interrupted_after(done, wanted, "runs")}; // every row is of all frames
+    const Completeness completeness{
+        frames, frames, is_complete,
+        is_complete ? "" : interrupted_after(done, wanted, "runs")}; // every row is of all frames
 
     std::vector<nlohmann::ordered_json> records;
     for (const Row& r : rows)
-        records.push_back({{"experiment", "cost"}, {"simulation", options.scene}, {"energy", r.energy}, {"integrator", r.integrator}, {"step_s", r.step_s}, {"steps", r.steps},
-                           {"error", r.error}, {"seconds_per_simulated_second", r.seconds_per_second}, {"pareto", r.pareto}, {"failure", r.failure}});
+        records.push_back({{"experiment", "cost"},
+                           {"simulation", options.scene},
+                           {"energy", r.energy},
+                           {"integrator", r.integrator},
+                           {"step_s", r.step_s},
+                           {"steps", r.steps},
+                           {"error", r.error},
+                           {"seconds_per_simulated_second", r.seconds_per_second},
+                           {"pareto", r.pareto},
+                           {"failure", r.failure}});
     if (options.output.json || !options.output.report.empty())
         for (const StepFigures::Row& r : steps.rows)
-            records.push_back({{"experiment", "cost"}, {"substep", "brain"}, {"nodes", r.nodes}, {"neighbours", r.neighbours}, {"us_per_substep", r.step_us},
-                               {"plain_us_per_substep", r.plain_us}, {"difference_m", r.off}});
+            records.push_back({{"experiment", "cost"},
+                               {"substep", "brain"},
+                               {"nodes", r.nodes},
+                               {"neighbours", r.neighbours},
+                               {"us_per_substep", r.step_us},
+                               {"plain_us_per_substep", r.plain_us},
+                               {"difference_m", r.off}});
     output.set(completeness);
     output.add_all(records);
     output.finish();
@@ -157,7 +179,8 @@ int cost_simulation(const CostSimulationOptions& options)
         fmt::print("{}: {:.3g} s simulated, one core\n\n", options.scene, scene.duration_s);
         std::vector<std::vector<std::string>> cells;
         for (const Row& r : rows)
-            cells.push_back({r.pareto ? "*" : "", r.energy, r.integrator, fmt::format("{:.3g}", 1e3 * r.step_s), std::to_string(r.steps), fmt::format("{:.2e}", r.error),
+            cells.push_back({r.pareto ? "*" : "", r.energy, r.integrator, fmt::format("{:.3g}", 1e3 * r.step_s),
+                             std::to_string(r.steps), fmt::format("{:.2e}", r.error),
                              fmt::format("{:.3f}", r.seconds_per_second), r.failure.substr(0, 20)});
         fmt::print("{}\n*: nothing of the same energy is both faster and more accurate. error: RMS\n"
                    "distance of the nodes at the end from a converged run of the same energy (fifty\n"
@@ -167,9 +190,11 @@ int cost_simulation(const CostSimulationOptions& options)
         if (!steps.rows.empty()) {
             cells.clear();
             for (const StepFigures::Row& r : steps.rows)
-                cells.push_back({std::to_string(r.nodes), fmt::format("{:.1f}", r.neighbours), fmt::format("{:.1f}", r.step_us), fmt::format("{:.1f}", r.plain_us),
+                cells.push_back({std::to_string(r.nodes), fmt::format("{:.1f}", r.neighbours),
+                                 fmt::format("{:.1f}", r.step_us), fmt::format("{:.1f}", r.plain_us),
                                  fmt::format("{:.2f}", r.plain_us / r.step_us)});
-            fmt::print("One explicit substep of a brain (gravity, neo-Hookean, hourglass), microseconds\n\n{}\n", table({"nodes", "neighbours", "cinch", "plain Eigen", "ratio"}, cells));
+            fmt::print("One explicit substep of a brain (gravity, neo-Hookean, hourglass), microseconds\n\n{}\n",
+                       table({"nodes", "neighbours", "cinch", "plain Eigen", "ratio"}, cells));
             print(steps.figures);
         }
         fmt::print("\n{}\n", describe(from));

@@ -14,8 +14,8 @@ struct CostSimulationOptions {
     OutputOptions output;
 };
 
-/// What accuracy costs in time: step size × integrator × energy against the error to a converged reference; and what one substep costs,
-/// against a plain Eigen version, nodes and neighbours. Returns the exit status.
+/// What accuracy costs in time: step size × integrator × energy against the error to a converged reference; and what
+/// one substep costs, against a plain Eigen version, nodes and neighbours. Returns the exit status.
 int cost_simulation(const CostSimulationOptions& options);
 
 } // namespace cinch

@@ -6,11 +6,11 @@
 
 #include <fmt/format.h>
 
+#include "cinch/surface.hpp"
 #include "experiments/guard_surface.hpp"
 #include "experiments/report/whole_file.hpp"
 #include "experiments/shipped.hpp"
 #include "toolkit/simulate/frame_file.hpp"
-#include "cinch/surface.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 
 namespace cinch {
@@ -45,11 +45,13 @@ FoundScene find_scene(const std::string& name, const SceneChanges& changes)
 {
     const bool file = fs::path(name).extension() == ".json";
     if (!file && !is_scene(name))
-        throw InputError::in_file(name, fmt::format("no such scene; known are {}, or a .json file", fmt::join(shipped_scenes(), ", ")));
+        throw InputError::in_file(
+            name, fmt::format("no such scene; known are {}, or a .json file", fmt::join(shipped_scenes(), ", ")));
     const fs::path path = file ? fs::path(name) : scene_folder() / (name + ".json");
     guard_input(path);
     const std::string text = read_bytes(path);
-    FoundScene found{parse_scene(text, file ? name : name + ".json", path.parent_path().string()), file ? name : name + ".json", 0};
+    FoundScene found{parse_scene(text, file ? name : name + ".json", path.parent_path().string()),
+                     file ? name : name + ".json", 0};
     Scene& scene = found.scene;
     if (changes.nodes) {
         bool any = false;
@@ -59,11 +61,13 @@ FoundScene find_scene(const std::string& name, const SceneChanges& changes)
                 any = true;
             }
         if (!any)
-            throw InputError::in_file(name, "--nodes needs a body whose simulation nodes are sampled; this scene gives them");
+            throw InputError::in_file(name,
+                                      "--nodes needs a body whose simulation nodes are sampled; this scene gives them");
     }
     if (changes.duration_s != -1) {
         if (!(changes.duration_s >= 0) || changes.duration_s / scene.frame_s > 1e6)
-            throw InputError(fmt::format("--duration {}: expected seconds >= 0 that make at most a million frames", changes.duration_s));
+            throw InputError(fmt::format("--duration {}: expected seconds >= 0 that make at most a million frames",
+                                         changes.duration_s));
         scene.duration_s = changes.duration_s;
     }
     if (changes.step_s != 0) {
@@ -72,7 +76,8 @@ FoundScene find_scene(const std::string& name, const SceneChanges& changes)
         scene.integration.step_s = changes.step_s;
     }
     if (!changes.integrator.empty())
-        scene.integration.method = changes.integrator == "explicit" ? Integration::Method::explicit_euler : Integration::Method::implicit_euler;
+        scene.integration.method = changes.integrator == "explicit" ? Integration::Method::explicit_euler
+                                                                    : Integration::Method::implicit_euler;
     // The duration is left out, so that a run can be continued for longer.
     std::string surfaces; // files that it names may change beside it
     for (const SceneBody& body : scene.bodies)
@@ -80,7 +85,8 @@ FoundScene find_scene(const std::string& name, const SceneChanges& changes)
     for (const SceneBody& body : scene.bodies)
         if (std::error_code error; fs::is_regular_file(body.surface, error))
             surfaces += fmt::format("{}|", checksum(read_bytes(body.surface)));
-    found.identity = checksum(surfaces + text + fmt::format("|{}|{}|{}", changes.nodes, changes.step_s, changes.integrator));
+    found.identity =
+        checksum(surfaces + text + fmt::format("|{}|{}|{}", changes.nodes, changes.step_s, changes.integrator));
     return found;
 }
 

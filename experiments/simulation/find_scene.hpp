@@ -11,7 +11,7 @@ namespace cinch {
 
 /// What a user may change of a scene without writing one.
 struct SceneChanges {
-    std::size_t nodes = 0; ///< of bodies whose nodes are sampled; 0 and empty: as the scene has it
+    std::size_t nodes = 0;              ///< of bodies whose nodes are sampled; 0 and empty: as the scene has it
     double duration_s = -1, step_s = 0; ///< −1, 0: as the scene has it
     std::string integrator;
 };
@@ -19,8 +19,8 @@ struct SceneChanges {
 /// A scene with where it comes from.
 struct FoundScene {
     Scene scene;
-    std::string file;        ///< for messages
-    std::uint64_t identity;  ///< of its text and the changes: a checkpoint continues only the same
+    std::string file;       ///< for messages
+    std::uint64_t identity; ///< of its text and the changes: a checkpoint continues only the same
 };
 
 /// Names of the scenes that come with the program.

@@ -10,9 +10,9 @@
 
 #include <fmt/format.h>
 
+#include "cinch/surface.hpp"
 #include "experiments/report/provenance.hpp"
 #include "toolkit/simulate/stream.hpp"
-#include "cinch/surface.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 
 namespace cinch {
@@ -25,8 +25,9 @@ bool is_text(const std::string& file) { return file.ends_with(".jsonl"); }
 
 void write_ply(std::ostream& out, const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles)
 {
-    out << "ply\nformat binary_little_endian 1.0\nelement vertex " << vertices.size() << "\nproperty float x\nproperty float y\nproperty float z\nelement face "
-        << triangles.size() << "\nproperty list uchar uint vertex_indices\nend_header\n";
+    out << "ply\nformat binary_little_endian 1.0\nelement vertex " << vertices.size()
+        << "\nproperty float x\nproperty float y\nproperty float z\nelement face " << triangles.size()
+        << "\nproperty list uchar uint vertex_indices\nend_header\n";
     for (const Vec3& v : vertices) {
         const Eigen::Vector3f f = v.cast<float>();
         out.write(reinterpret_cast<const char*>(f.data()), 12);
@@ -40,12 +41,14 @@ void write_ply(std::ostream& out, const std::vector<Vec3>& vertices, const std::
 void write_obj(std::ostream& out, const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles)
 {
     for (const Vec3& v : vertices)
-        out << fmt::format("v {} {} {}\n", static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]));
+        out << fmt::format("v {} {} {}\n", static_cast<float>(v[0]), static_cast<float>(v[1]),
+                           static_cast<float>(v[2]));
     for (const Triangle& t : triangles)
         out << fmt::format("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1);
 }
 
-std::string json_lines(std::size_t frame, double time_s, const std::vector<std::string>& names, std::span<const std::vector<AffineMap>> maps)
+std::string json_lines(std::size_t frame, double time_s, const std::vector<std::string>& names,
+                       std::span<const std::vector<AffineMap>> maps)
 {
     std::string out;
     for (std::size_t b = 0; b < maps.size(); ++b) {
@@ -62,11 +65,15 @@ std::string json_lines(std::size_t frame, double time_s, const std::vector<std::
 }
 
 enum class FrameFormat : std::uint64_t { none, binary, text };
-FrameFormat format_of(const std::string& file) { return file.empty() ? FrameFormat::none : is_text(file) ? FrameFormat::text : FrameFormat::binary; }
+FrameFormat format_of(const std::string& file)
+{
+    return file.empty() ? FrameFormat::none : is_text(file) ? FrameFormat::text : FrameFormat::binary;
+}
 
 struct Checkpoint {
     struct Header {
-        std::uint64_t identity = 0, bytes = 0, checksum = checksum_of_nothing, written = 0; ///< of the scene; of the file of frames; frames in it
+        std::uint64_t identity = 0, bytes = 0, checksum = checksum_of_nothing,
+                      written = 0; ///< of the scene; of the file of frames; frames in it
         FrameFormat format = FrameFormat::none;
         std::uint64_t program_bytes = 0, state_bytes = 0; ///< what follows
     } header;
@@ -96,7 +103,8 @@ Checkpoint read_checkpoint(const std::string& file)
     read_raw<Checkpoint::Header>(in, {&checkpoint.header, 1});
     const Checkpoint::Header& header = checkpoint.header;
     const std::uint64_t rest = bytes.size() - overhead;
-    if (header.program_bytes > rest || header.state_bytes != rest - header.program_bytes || header.format > FrameFormat::text ||
+    if (header.program_bytes > rest || header.state_bytes != rest - header.program_bytes ||
+        header.format > FrameFormat::text ||
         (header.format == FrameFormat::none && (header.bytes != 0 || header.written != 0)))
         throw InputError::in_file(file, "contradicts itself");
     checkpoint.program = bytes.substr(overhead - 8, header.program_bytes);
@@ -107,7 +115,8 @@ Checkpoint read_checkpoint(const std::string& file)
 } // namespace
 
 FrameOutput::FrameOutput(const SimulateOptions& options, const FoundScene& scene, Simulation& simulation)
-    : options_(options), identity_(scene.identity), checkpoint_(options.checkpoint.empty() ? options.resume : options.checkpoint)
+    : options_(options), identity_(scene.identity),
+      checkpoint_(options.checkpoint.empty() ? options.resume : options.checkpoint)
 {
     layout_.frame_s = simulation.scene().frame_s;
     for (Simulation::Body& body : simulation.bodies()) {
@@ -146,7 +155,8 @@ bool FrameOutput::is_mesh_name(const fs::path& file) const
 {
     const std::string stem = file.stem().string();
     const std::size_t dash = stem.rfind('-');
-    return file.extension() == "." + options_.mesh_format && dash != std::string::npos && stem.find_first_not_of("0123456789", dash + 1) == std::string::npos &&
+    return file.extension() == "." + options_.mesh_format && dash != std::string::npos &&
+           stem.find_first_not_of("0123456789", dash + 1) == std::string::npos &&
            std::find(names_.begin(), names_.end(), stem.substr(0, dash)) != names_.end();
 }
 
@@ -154,25 +164,34 @@ void FrameOutput::resume(Simulation& simulation)
 {
     const Checkpoint checkpoint = read_checkpoint(options_.resume);
     if (checkpoint.program != this_program())
-        throw InputError::in_file(options_.resume, fmt::format("was written by cinch {}, this is {}, whose frames may differ; continue with the same program", checkpoint.program, this_program()));
+        throw InputError::in_file(
+            options_.resume,
+            fmt::format("was written by cinch {}, this is {}, whose frames may differ; continue with the same program",
+                        checkpoint.program, this_program()));
     if (checkpoint.header.identity != identity_)
         throw InputError::in_file(options_.resume, "is of another scene, or of other settings than these");
     if (checkpoint.header.format != format_of(options_.frames))
-        throw InputError::in_file(options_.resume, checkpoint.header.format == FrameFormat::none     ? "is of a run without --frames"
-                                                   : checkpoint.header.format == FrameFormat::binary ? "continues with --frames FILE, binary"
-                                                                                                     : "continues with --frames FILE.jsonl");
+        throw InputError::in_file(
+            options_.resume, checkpoint.header.format == FrameFormat::none     ? "is of a run without --frames"
+                             : checkpoint.header.format == FrameFormat::binary ? "continues with --frames FILE, binary"
+                                                                               : "continues with --frames FILE.jsonl");
     std::istringstream state(checkpoint.state);
     simulation.restore(state);
     if (!state || state.peek() != std::istringstream::traits_type::eof())
         throw InputError::in_file(options_.resume, "does not fit this scene");
     if (simulation.frame() >= simulation.frame_count())
-        throw InputError::in_file(options_.resume, fmt::format("is at frame {}, and this run ends with frame {}; give it a longer --duration", simulation.frame(), simulation.frame_count() - 1));
+        throw InputError::in_file(
+            options_.resume, fmt::format("is at frame {}, and this run ends with frame {}; give it a longer --duration",
+                                         simulation.frame(), simulation.frame_count() - 1));
     for (const Simulation::Body& body : simulation.bodies())
         for (const Field* field : {&body.simulation.positions(), &body.simulation.velocities()})
             if (!std::all_of(field->begin(), field->end(), [](double x) { return std::isfinite(x); }))
-                throw InputError::in_file(options_.resume, "has numbers for body '" + body.name + "' that are not finite");
-    if (const std::uint64_t frames = simulation.frame() + 1; checkpoint.header.format != FrameFormat::none && checkpoint.header.written != frames)
-        throw InputError::in_file(options_.resume, fmt::format("is at frame {}, but says that {} frames are written", simulation.frame(), checkpoint.header.written));
+                throw InputError::in_file(options_.resume,
+                                          "has numbers for body '" + body.name + "' that are not finite");
+    if (const std::uint64_t frames = simulation.frame() + 1;
+        checkpoint.header.format != FrameFormat::none && checkpoint.header.written != frames)
+        throw InputError::in_file(options_.resume, fmt::format("is at frame {}, but says that {} frames are written",
+                                                               simulation.frame(), checkpoint.header.written));
     bytes_ = checkpoint.header.bytes;
     checksum_ = checkpoint.header.checksum;
     written_ = checkpoint.header.written;
@@ -201,18 +220,21 @@ std::string FrameOutput::write(Simulation& simulation)
             for (const auto& row : map.m)
                 for (const double value : row)
                     if (!std::isfinite(value))
-                        return fmt::format("body '{}' at {:.6g} s: its transforms are no longer finite", body.name, simulation.time_s());
+                        return fmt::format("body '{}' at {:.6g} s: its transforms are no longer finite", body.name,
+                                           simulation.time_s());
     }
     if (!options_.frames.empty()) {
-        const std::string record = is_text(options_.frames) ? json_lines(simulation.frame(), simulation.time_s(), names_, maps)
-                                                            : frame_record(layout_, simulation.frame(), simulation.time_s(), maps);
+        const std::string record = is_text(options_.frames)
+                                       ? json_lines(simulation.frame(), simulation.time_s(), names_, maps)
+                                       : frame_record(layout_, simulation.frame(), simulation.time_s(), maps);
         append(record);
         ++written_;
     }
     return options_.meshes.empty() ? "" : write_meshes(simulation.frame(), maps, simulation);
 }
 
-std::string FrameOutput::write_meshes(std::size_t frame, std::span<const std::vector<AffineMap>> maps, const Simulation& simulation)
+std::string FrameOutput::write_meshes(std::size_t frame, std::span<const std::vector<AffineMap>> maps,
+                                      const Simulation& simulation)
 {
     for (std::size_t b = 0; b < maps.size(); ++b) {
         const TriangleMesh& mesh = simulation.bodies()[b].simulation.surface()->mesh;
@@ -220,8 +242,10 @@ std::string FrameOutput::write_meshes(std::size_t frame, std::span<const std::ve
         (*surface_[b])(maps[b], vertices);
         for (const Vec3& v : vertices)
             if (!(v.cwiseAbs().maxCoeff() <= std::numeric_limits<float>::max()))
-                return fmt::format("body '{}' at {:.6g} s: a position is beyond what a mesh file holds", names_[b], simulation.time_s());
-        const fs::path file = fs::path(options_.meshes) / fmt::format("{}-{:05}.{}", names_[b], frame, options_.mesh_format);
+                return fmt::format("body '{}' at {:.6g} s: a position is beyond what a mesh file holds", names_[b],
+                                   simulation.time_s());
+        const fs::path file =
+            fs::path(options_.meshes) / fmt::format("{}-{:05}.{}", names_[b], frame, options_.mesh_format);
         std::ostringstream out;
         (options_.mesh_format == "obj" ? write_obj : write_ply)(out, vertices, mesh.triangles);
         write_whole(file, out.view());
@@ -240,7 +264,8 @@ void FrameOutput::save(const Simulation& simulation)
     std::ostringstream state;
     simulation.save(state);
     const std::string program = this_program();
-    const Checkpoint::Header header{identity_, bytes_, checksum_, written_, format_of(options_.frames), program.size(), state.view().size()};
+    const Checkpoint::Header header{
+        identity_, bytes_, checksum_, written_, format_of(options_.frames), program.size(), state.view().size()};
     write_raw<Checkpoint::Header>(out, {&header, 1});
     out << program << state.view();
     const std::uint64_t sum = checksum(out.view());

@@ -7,8 +7,9 @@
 
 namespace cinch {
 
-/// One substep of symplectic Euler under gravity, a stable neo-Hookean material and hourglass control, as one would write it with
-/// Eigen from the formulas alone, effect by effect: what the toolkit's step is checked against, and timed against.
+/// One substep of symplectic Euler under gravity, a stable neo-Hookean material and hourglass control, as one would
+/// write it with Eigen from the formulas alone, effect by effect: what the toolkit's step is checked against, and timed
+/// against.
 class PlainBody {
 public:
     PlainBody(const MeshlessBody& body, const Vec3& gravity, double young, double poisson, double hourglass);

@@ -8,13 +8,13 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 
+#include "cinch/surface.hpp"
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/number.hpp"
 #include "experiments/report/progress.hpp"
 #include "experiments/report/provenance.hpp"
 #include "experiments/report/table.hpp"
 #include "experiments/simulation/frame_output.hpp"
-#include "cinch/surface.hpp"
 
 namespace cinch {
 namespace {
@@ -58,17 +58,20 @@ std::size_t bodies_pinned(const Simulation& simulation, bool scripted)
 {
     std::size_t count = 0;
     for (const Simulation::Body& body : simulation.bodies())
-        count += std::any_of(simulation.scene().effects.begin(), simulation.scene().effects.end(), [&](const SceneEffect& e) {
-            const bool is = scripted ? std::holds_alternative<ScriptedSpec>(e.what) : std::holds_alternative<PinnedSpec>(e.what);
-            return is && (e.bodies.empty() || std::find(e.bodies.begin(), e.bodies.end(), body.name) != e.bodies.end());
-        });
+        count += std::any_of(
+            simulation.scene().effects.begin(), simulation.scene().effects.end(), [&](const SceneEffect& e) {
+                const bool is = scripted ? std::holds_alternative<ScriptedSpec>(e.what)
+                                         : std::holds_alternative<PinnedSpec>(e.what);
+                return is &&
+                       (e.bodies.empty() || std::find(e.bodies.begin(), e.bodies.end(), body.name) != e.bodies.end());
+            });
     return count;
 }
 
 struct Result {
     std::vector<BodyTotals> bodies;
     std::size_t frames = 0, steps = 0; ///< advanced; steps over all bodies
-    double seconds = 0; ///< of all bodies, one after the other
+    double seconds = 0;                ///< of all bodies, one after the other
     std::string failure;
     std::size_t first = 0, last = 0; ///< frame that the run begins with, and that it is to come to
 
@@ -76,16 +79,30 @@ struct Result {
     Completeness completeness() const
     {
         const std::size_t wanted = last > first ? last - first : 0;
-        return {frames, wanted, is_complete(), is_complete() ? "" : failure.empty() ? interrupted_after(frames, wanted, "frames") : fmt::format("stopped after {} of {} frames", frames, wanted)};
+        return {frames, wanted, is_complete(),
+                is_complete()     ? ""
+                : failure.empty() ? interrupted_after(frames, wanted, "frames")
+                                  : fmt::format("stopped after {} of {} frames", frames, wanted)};
     }
 };
 
 Json energies_of(const Simulation& simulation, const std::string& scene, std::size_t b, const StepReport& r)
 {
-    return {{"experiment", "simulate"}, {"scene", scene}, {"frame", simulation.frame()}, {"time_s", simulation.time_s()}, {"body", simulation.bodies()[b].name},
-            {"substeps", r.substeps}, {"iterations", r.iterations}, {"products", r.products}, {"residual_m_per_s2", r.residual},
-            {"acceleration_m_per_s2", r.acceleration}, {"kinetic_j", r.kinetic}, {"potential_j", r.potential},
-            {"frames_done", 1}, {"frames", 1}, {"complete", true}}; // this one
+    return {{"experiment", "simulate"},
+            {"scene", scene},
+            {"frame", simulation.frame()},
+            {"time_s", simulation.time_s()},
+            {"body", simulation.bodies()[b].name},
+            {"substeps", r.substeps},
+            {"iterations", r.iterations},
+            {"products", r.products},
+            {"residual_m_per_s2", r.residual},
+            {"acceleration_m_per_s2", r.acceleration},
+            {"kinetic_j", r.kinetic},
+            {"potential_j", r.potential},
+            {"frames_done", 1},
+            {"frames", 1},
+            {"complete", true}}; // this one
 }
 
 Result run(const SimulateOptions& options, Simulation& simulation, FrameOutput& output, RecordOutput& records)
@@ -106,7 +123,8 @@ Result run(const SimulateOptions& options, Simulation& simulation, FrameOutput& 
         for (std::size_t b = 0; b < reports.size(); ++b) {
             const StepReport& r = reports[b];
             if (!r.failure.empty() && result.failure.empty())
-                result.failure = fmt::format("body '{}' at {:.6g} s: {}", simulation.bodies()[b].name, simulation.time_s(), r.failure);
+                result.failure = fmt::format("body '{}' at {:.6g} s: {}", simulation.bodies()[b].name,
+                                             simulation.time_s(), r.failure);
         }
         if (!result.failure.empty()) {
             if (interrupted()) // within the frame; the state is that before it
@@ -140,9 +158,13 @@ Result run(const SimulateOptions& options, Simulation& simulation, FrameOutput& 
     return result;
 }
 
-double ms_per_step(double seconds, const Result& result) { return result.steps ? 1e3 * seconds / static_cast<double>(result.steps) : 0; }
+double ms_per_step(double seconds, const Result& result)
+{
+    return result.steps ? 1e3 * seconds / static_cast<double>(result.steps) : 0;
+}
 
-void add_totals(const SimulateOptions& options, const Simulation& simulation, const Result& result, RecordOutput& records)
+void add_totals(const SimulateOptions& options, const Simulation& simulation, const Result& result,
+                RecordOutput& records)
 {
     std::vector<std::string> names;
     const auto effects = effect_totals(simulation);
@@ -158,16 +180,31 @@ void add_totals(const SimulateOptions& options, const Simulation& simulation, co
         shared += body.simulation.shared_seconds();
         nodes += body.simulation.body().size();
     }
-    records.add(Json{{"experiment", "simulate"}, {"scene", options.scene}, {"effects", names}, {"bodies", simulation.bodies().size()}, {"nodes", nodes},
-                            {"steps", result.steps}, {"ms_per_step", ms_per_step(result.seconds, result)}, {"time_s", simulation.time_s()},
-                            {"load_report", simulation.notes()}, {"failure", result.failure}});
+    records.add(Json{{"experiment", "simulate"},
+                     {"scene", options.scene},
+                     {"effects", names},
+                     {"bodies", simulation.bodies().size()},
+                     {"nodes", nodes},
+                     {"steps", result.steps},
+                     {"ms_per_step", ms_per_step(result.seconds, result)},
+                     {"time_s", simulation.time_s()},
+                     {"load_report", simulation.notes()},
+                     {"failure", result.failure}});
     for (const auto& [name, totals] : effects)
-        records.add(Json{{"experiment", "simulate"}, {"scene", options.scene}, {"effect", name}, {"bodies", totals.bodies}, {"calls", totals.calls},
+        records.add(Json{{"experiment", "simulate"},
+                         {"scene", options.scene},
+                         {"effect", name},
+                         {"bodies", totals.bodies},
+                         {"calls", totals.calls},
                          {"ms_per_step", ms_per_step(totals.seconds, result)}});
-    records.add(Json{{"experiment", "simulate"}, {"scene", options.scene}, {"effect", "shared: J and the transport of stresses"}, {"ms_per_step", ms_per_step(shared, result)}});
+    records.add(Json{{"experiment", "simulate"},
+                     {"scene", options.scene},
+                     {"effect", "shared: J and the transport of stresses"},
+                     {"ms_per_step", ms_per_step(shared, result)}});
 }
 
-void print_tables(const SimulateOptions& options, const Simulation& simulation, const Result& result, const Provenance& from)
+void print_tables(const SimulateOptions& options, const Simulation& simulation, const Result& result,
+                  const Provenance& from)
 {
     const Integration& integration = simulation.scene().integration;
     const bool is_explicit = integration.method == Integration::Method::explicit_euler;
@@ -179,24 +216,28 @@ void print_tables(const SimulateOptions& options, const Simulation& simulation, 
     }
     print_note(result.completeness());
     fmt::print("{}\n", folded(options.scene + ": " + simulation.scene().about));
-    fmt::print("{}, {}, {}, {:.1f} neighbours each\n", counted(simulation.bodies().size(), "body", "bodies"), counted(vertices, "vertex", "vertices"),
-               counted(nodes, "simulation node", "simulation nodes"), static_cast<double>(neighbours) / static_cast<double>(nodes));
+    fmt::print("{}, {}, {}, {:.1f} neighbours each\n", counted(simulation.bodies().size(), "body", "bodies"),
+               counted(vertices, "vertex", "vertices"), counted(nodes, "simulation node", "simulation nodes"),
+               static_cast<double>(neighbours) / static_cast<double>(nodes));
     for (const std::string& note : simulation.notes())
         fmt::print("{}\n", folded("note: " + note));
-    fmt::print("\n{} to {:.3f} s, {} Euler, {} ({:.3f} ms each)\n\n", counted(result.frames, "frame", "frames"), simulation.time_s(),
-               is_explicit ? "symplectic" : "implicit", counted(result.steps, "step", "steps"), ms_per_step(result.seconds, result));
+    fmt::print("\n{} to {:.3f} s, {} Euler, {} ({:.3f} ms each)\n\n", counted(result.frames, "frame", "frames"),
+               simulation.time_s(), is_explicit ? "symplectic" : "implicit", counted(result.steps, "step", "steps"),
+               ms_per_step(result.seconds, result));
 
     std::vector<std::vector<std::string>> rows;
     double shared = 0;
     for (const Simulation::Body& body : simulation.bodies())
         shared += body.simulation.shared_seconds();
     for (const auto& [name, totals] : effect_totals(simulation))
-        rows.push_back({name, std::to_string(totals.bodies), grouped(totals.calls), fmt::format("{:.4f}", ms_per_step(totals.seconds, result))});
+        rows.push_back({name, std::to_string(totals.bodies), grouped(totals.calls),
+                        fmt::format("{:.4f}", ms_per_step(totals.seconds, result))});
     for (const bool scripted : {false, true})
         if (const std::size_t count = bodies_pinned(simulation, scripted))
             rows.push_back({scripted ? "scripted" : "pinned", std::to_string(count), "-", "-"});
     rows.push_back({"shared", "", "", fmt::format("{:.4f}", ms_per_step(shared, result))});
-    fmt::print("{}shared: computing J, and carrying stresses to the nodes\n\n", table({"effect", "bodies", "calls", "ms per step"}, rows));
+    fmt::print("{}shared: computing J, and carrying stresses to the nodes\n\n",
+               table({"effect", "bodies", "calls", "ms per step"}, rows));
 
     rows.clear();
     for (std::size_t b = 0; b < result.bodies.size(); ++b) {
@@ -204,8 +245,10 @@ void print_tables(const SimulateOptions& options, const Simulation& simulation, 
         const double steps = std::max<double>(1, static_cast<double>(t.steps));
         std::vector<std::string> row{simulation.bodies()[b].name, grouped(t.steps)};
         if (!is_explicit)
-            for (const std::string& cell : {fmt::format("{:.1f}", static_cast<double>(t.iterations) / steps), fmt::format("{:.0f}", static_cast<double>(t.products) / steps),
-                                            grouped(t.projected), fmt::format("{:.1e}", t.residual), fmt::format("{:.1e}", t.relative)})
+            for (const std::string& cell :
+                 {fmt::format("{:.1f}", static_cast<double>(t.iterations) / steps),
+                  fmt::format("{:.0f}", static_cast<double>(t.products) / steps), grouped(t.projected),
+                  fmt::format("{:.1e}", t.residual), fmt::format("{:.1e}", t.relative)})
                 row.push_back(cell);
         row.push_back(fmt::format("{:.4g}", t.last.kinetic));
         row.push_back(fmt::format("{:.4g}", t.last.potential));
@@ -238,7 +281,8 @@ void print_tables(const SimulateOptions& options, const Simulation& simulation, 
         for (const Simulation::Body& body : simulation.bodies())
             for (const BodySimulation::Slot& slot : body.simulation.effects())
                 needs |= slot.effect->needs_deformation();
-        fmt::print("J is computed {}.\n", needs ? "in every evaluation: an effect needs it" : "only for frames: no effect needs it");
+        fmt::print("J is computed {}.\n",
+                   needs ? "in every evaluation: an effect needs it" : "only for frames: no effect needs it");
         for (const auto& [name, totals] : effect_totals(simulation))
             fmt::print("{}: {} constructed, {} calls\n", name, Effect::constructed(name), grouped(totals.calls));
     }

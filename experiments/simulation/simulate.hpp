@@ -9,11 +9,11 @@ namespace cinch {
 struct SimulateOptions {
     std::string scene;
     SceneChanges changes;
-    std::string frames;      ///< file of node transforms: binary, or JSON Lines if it ends in .jsonl; empty: none
-    std::string meshes;      ///< folder of one mesh per body and frame; empty: none
+    std::string frames; ///< file of node transforms: binary, or JSON Lines if it ends in .jsonl; empty: none
+    std::string meshes; ///< folder of one mesh per body and frame; empty: none
     std::string mesh_format = "ply";
     std::string checkpoint, resume; ///< files; empty: none
-    std::size_t every = 10;  ///< frames from checkpoint to checkpoint
+    std::size_t every = 10;         ///< frames from checkpoint to checkpoint
     int threads = 0;
     bool explain = false, energies = false;
     OutputOptions output;

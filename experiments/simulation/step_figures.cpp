@@ -6,10 +6,10 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "cinch/deform.hpp"
 #include "experiments/simulation/plain_step.hpp"
 #include "toolkit/deform/motion.hpp"
 #include "toolkit/deform/sample_nodes.hpp"
-#include "cinch/deform.hpp"
 #include "toolkit/simulate/body_simulation.hpp"
 #include "toolkit/simulate/effects/effects.hpp"
 #include "toolkit/surface/shapes.hpp"
@@ -60,7 +60,8 @@ StepFigures::Row measure_step(const TriangleMesh& mesh, std::size_t nodes, doubl
         reference.step(dt);
     for (std::size_t i = 0; i < body.size(); ++i)
         off = std::max(off, (at(again.positions(), i) - reference.x[i]).norm());
-    return {body.size(), static_cast<double>(body.neighbour.size()) / static_cast<double>(body.size()), 1e-3 * ns[0] / steps, 1e-3 * ns[1] / steps, off};
+    return {body.size(), static_cast<double>(body.neighbour.size()) / static_cast<double>(body.size()),
+            1e-3 * ns[0] / steps, 1e-3 * ns[1] / steps, off};
 }
 
 void measure_evaluation(StepFigures& out, double seconds)
@@ -87,17 +88,19 @@ void measure_evaluation(StepFigures& out, double seconds)
         eigen.push_back(e);
     }
     std::vector<Vec3> ours(surface.mesh.vertices.size()), plain = ours;
-    const std::vector<double> ns = race({[&] { evaluate(maps, ours); }, [&] { evaluate_float(maps, ours); },
-                                         [&] {
-                                             for (std::size_t k = 0; k < plain.size(); ++k) {
-                                                 Vec3 sum = Vec3::Zero();
-                                                 const Weights::Row row = surface.weights.of(k);
-                                                 for (std::size_t e = 0; e < row.node.size(); ++e)
-                                                     sum += row.weight[e] * (eigen[row.node[e]].a * surface.mesh.vertices[k] + eigen[row.node[e]].t);
-                                                 plain[k] = sum;
-                                             }
-                                         }},
-                                        seconds);
+    const std::vector<double> ns =
+        race({[&] { evaluate(maps, ours); }, [&] { evaluate_float(maps, ours); },
+              [&] {
+                  for (std::size_t k = 0; k < plain.size(); ++k) {
+                      Vec3 sum = Vec3::Zero();
+                      const Weights::Row row = surface.weights.of(k);
+                      for (std::size_t e = 0; e < row.node.size(); ++e)
+                          sum +=
+                              row.weight[e] * (eigen[row.node[e]].a * surface.mesh.vertices[k] + eigen[row.node[e]].t);
+                      plain[k] = sum;
+                  }
+              }},
+             seconds);
     out.evaluate_us = 1e-3 * ns[0];
     out.evaluate_float_us = 1e-3 * ns[1];
     out.evaluate_plain_us = 1e-3 * ns[2];
@@ -131,12 +134,15 @@ StepFigures measure_steps(double seconds)
         off = std::max(off, row.off);
     const double step = reference.plain_us / reference.step_us, evaluate = out.evaluate_plain_us / out.evaluate_us,
                  evaluate_float = out.evaluate_plain_us / out.evaluate_float_us;
-    out.figures = {{fmt::format("plain Eigen / substep, {:.0f} neighbours", reference.neighbours), fmt::format("{:.2f}", step), ">= 5", step >= 5},
-                   {"difference of the two after 100 steps, m", fmt::format("{:.0e}", off), "<= 1e-12", off <= 1e-12},
-                   {"exponent of nodes x neighbours", fmt::format("{:.2f}", out.nodes_slope), "<= 1.1", out.nodes_slope <= 1.1},
-                   {"exponent of neighbours at 509 nodes", fmt::format("{:.2f}", out.neighbours_slope), "<= 1.1", out.neighbours_slope <= 1.1},
-                   {"plain Eigen / surface in float, 30K", fmt::format("{:.2f}", evaluate_float), ">= 4", evaluate_float >= 4},
-                   {"plain Eigen / surface in double, 30K", fmt::format("{:.2f}", evaluate), ">= 4", evaluate >= 4}};
+    out.figures = {
+        {fmt::format("plain Eigen / substep, {:.0f} neighbours", reference.neighbours), fmt::format("{:.2f}", step),
+         ">= 5", step >= 5},
+        {"difference of the two after 100 steps, m", fmt::format("{:.0e}", off), "<= 1e-12", off <= 1e-12},
+        {"exponent of nodes x neighbours", fmt::format("{:.2f}", out.nodes_slope), "<= 1.1", out.nodes_slope <= 1.1},
+        {"exponent of neighbours at 509 nodes", fmt::format("{:.2f}", out.neighbours_slope), "<= 1.1",
+         out.neighbours_slope <= 1.1},
+        {"plain Eigen / surface in float, 30K", fmt::format("{:.2f}", evaluate_float), ">= 4", evaluate_float >= 4},
+        {"plain Eigen / surface in double, 30K", fmt::format("{:.2f}", evaluate), ">= 4", evaluate >= 4}};
     return out;
 }
 

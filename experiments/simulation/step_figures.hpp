@@ -7,14 +7,14 @@
 
 namespace cinch {
 
-/// Times of one explicit substep on the shipped brain: against nodes, neighbours and the plain Eigen version of the same step, which
-/// must agree; and of evaluating the surface against the plain Eigen loop. All take turns on one core.
+/// Times of one explicit substep on the shipped brain: against nodes, neighbours and the plain Eigen version of the
+/// same step, which must agree; and of evaluating the surface against the plain Eigen loop. All take turns on one core.
 struct StepFigures {
     struct Row {
         std::size_t nodes;
-        double neighbours;      ///< mean
+        double neighbours; ///< mean
         double step_us, plain_us;
-        double off;             ///< greatest difference of a position after the steps of both, m
+        double off; ///< greatest difference of a position after the steps of both, m
     };
     std::vector<Row> rows;
     double nodes_slope = 0, neighbours_slope = 0;

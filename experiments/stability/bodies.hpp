@@ -21,12 +21,14 @@ inline std::vector<Vec3> lattice(const Vec3& size, int x, int y, int z)
     for (int i = 0; i < x; ++i)
         for (int j = 0; j < y; ++j)
             for (int k = 0; k < z; ++k)
-                nodes.emplace_back(size[0] * ((i + 0.5) / x - 0.5), size[1] * ((j + 0.5) / y - 0.5), size[2] * ((k + 0.5) / z - 0.5));
+                nodes.emplace_back(size[0] * ((i + 0.5) / x - 0.5), size[1] * ((j + 0.5) / y - 0.5),
+                                   size[2] * ((k + 0.5) / z - 0.5));
     return nodes;
 }
 
 /// Nodes with the surface of a box around them (a sheet, if the box is flat) that they move.
-inline BodySimulation body_in_box(const Vec3& size, const std::vector<Vec3>& nodes, const MeshlessOptions& options = {}, double thickness = 0.01)
+inline BodySimulation body_in_box(const Vec3& size, const std::vector<Vec3>& nodes, const MeshlessOptions& options = {},
+                                  double thickness = 0.01)
 {
     DeformableSurface surface{box(size, {8, 4, 4}), {}};
     double fill = 0;
@@ -38,7 +40,8 @@ inline BodySimulation body_in_box(const Vec3& size, const std::vector<Vec3>& nod
     }
     surface.weights = kernel_weights(surface.mesh, {nodes, fill}, 2);
     const double volume = size[0] * size[1] * (size[2] > 0 ? size[2] : thickness);
-    return {discretise(nodes, std::vector<double>(nodes.size(), volume / static_cast<double>(nodes.size())), options), std::move(surface)};
+    return {discretise(nodes, std::vector<double>(nodes.size(), volume / static_cast<double>(nodes.size())), options),
+            std::move(surface)};
 }
 
 inline void add_elastic(BodySimulation& s, double young, Missing missing, double poisson = 0.3)
@@ -72,9 +75,15 @@ inline Field moved(const MeshlessBody& body, const Mat3& a, const Vec3& b)
         at(x, i) = a * body.rest[i] + b;
     return x;
 }
-inline void place(BodySimulation& s, const Mat3& a, const Vec3& b = Vec3::Zero()) { s.place(moved(s.body(), a, b), Field(4 * s.body().size(), 0)); }
+inline void place(BodySimulation& s, const Mat3& a, const Vec3& b = Vec3::Zero())
+{
+    s.place(moved(s.body(), a, b), Field(4 * s.body().size(), 0));
+}
 
-inline bool is_finite(const BodySimulation& s) { return whole(s.positions()).allFinite() && whole(s.velocities()).allFinite(); }
+inline bool is_finite(const BodySimulation& s)
+{
+    return whole(s.positions()).allFinite() && whole(s.velocities()).allFinite();
+}
 
 inline StabilityState state_of(BodySimulation& s) { return {*s.surface(), {s.frame()}}; }
 

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cfenv>
 
-#include "experiments/stability/bodies.hpp"
 #include "cinch/bounds.hpp"
+#include "cinch/environment.hpp"
+#include "cinch/refit.hpp"
+#include "cinch/surface.hpp"
+#include "experiments/stability/bodies.hpp"
 #include "toolkit/bounds/weight_space.hpp"
 #include "toolkit/deform/dyadic.hpp"
 #include "toolkit/deform/motion.hpp"
-#include "cinch/surface.hpp"
-#include "cinch/refit.hpp"
-#include "cinch/environment.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 
 #if defined(__SSE__)
@@ -78,7 +78,8 @@ StabilityOutcome sums_off_one(Missing)
 {
     // l sums to more than 1, h to less, by rounding: D needs no feasible weights.
     const double third = 1.0 / 3 + 0x1p-52;
-    const std::vector<double> over{third, third, third}, under{1.0 / 3 - 0x1p-52, 1.0 / 3 - 0x1p-52, 1.0 / 3 - 0x1p-52}, b{1, 2, 4};
+    const std::vector<double> over{third, third, third}, under{1.0 / 3 - 0x1p-52, 1.0 / 3 - 0x1p-52, 1.0 / 3 - 0x1p-52},
+        b{1, 2, 4};
     StabilityOutcome out;
     out.pass = true;
     for (const auto& w : {over, under})
@@ -87,7 +88,8 @@ StabilityOutcome sums_off_one(Missing)
             out.pass &= std::isfinite(d) && std::abs(d - 7.0 / 3) < 1e-8;
         }
     out.observed = out.pass ? "7/3 within 1e-8 for lambdas up to 1e6" : "not the value 7/3";
-    StabilityState thirds{{{}, weights_of(3, {{1, 1, 1}, {1, 1, 1}, {1, 1, 1}})}, {{shifted(1, 0, 0), shifted(0, 2, 0), shifted(0, 0, 4)}}};
+    StabilityState thirds{{{}, weights_of(3, {{1, 1, 1}, {1, 1, 1}, {1, 1, 1}})},
+                          {{shifted(1, 0, 0), shifted(0, 2, 0), shifted(0, 0, 4)}}};
     thirds.surface.mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     thirds.surface.mesh.triangles = {{0, 1, 2}};
     out.states.push_back(std::move(thirds));
@@ -108,7 +110,8 @@ StabilityOutcome fixed_weights(Missing)
     out.pass = least >= exact && most - exact < 1e-12;
     out.observed = fmt::format("D within {:.0e} for all lambda", most - exact);
     StabilityState one = twisted_box(5);
-    one.surface.weights = weights_of(5, std::vector<std::vector<double>>(one.surface.mesh.vertices.size(), {1, 2, 3, 4, 5}));
+    one.surface.weights =
+        weights_of(5, std::vector<std::vector<double>>(one.surface.mesh.vertices.size(), {1, 2, 3, 4, 5}));
     out.states.push_back(std::move(one));
     return out;
 }
@@ -120,7 +123,8 @@ StabilityOutcome zero_l(Missing)
     std::size_t zero = 0;
     for (std::size_t i = 0; i < bvh.bvs[0].influence_count; ++i)
         zero += bvh.l[i] == 0 && bvh.h[i] > 0;
-    StabilityOutcome out = proven_only(std::move(state), fmt::format("{} of {} at the root", zero, bvh.bvs[0].influence_count));
+    StabilityOutcome out =
+        proven_only(std::move(state), fmt::format("{} of {} at the root", zero, bvh.bvs[0].influence_count));
     out.pass = zero > 0;
     return out;
 }
@@ -171,7 +175,8 @@ StabilityOutcome far_away(Missing)
     double inflation = 0;
     const double half[3] = {1e-3, 0.5e-3, 0.4e-3}, centre[3] = {1e8, -1e8, 1e8};
     for (int a = 0; a < 3; ++a)
-        inflation = std::max({inflation, bounds[2 * a] - (centre[a] + half[a]), bounds[2 * a + 1] - (-centre[a] + half[a])});
+        inflation =
+            std::max({inflation, bounds[2 * a] - (centre[a] + half[a]), bounds[2 * a + 1] - (-centre[a] + half[a])});
     StabilityOutcome out = proven_only(std::move(state), fmt::format("inflated by {:.1e}", inflation));
     out.pass = inflation < 5e-7;
     return out;
@@ -198,7 +203,8 @@ StabilityOutcome not_finite(Missing)
 {
     StabilityOutcome out;
     int refused = 0;
-    for (const char* text : {"OFF\n3 1 0\n0 0 nan\n1 0 0\n0 1 0\n3 0 1 2\n", "OFF\n3 1 0\n0 0 inf\n1 0 0\n0 1 0\n3 0 1 2\n"})
+    for (const char* text :
+         {"OFF\n3 1 0\n0 0 nan\n1 0 0\n0 1 0\n3 0 1 2\n", "OFF\n3 1 0\n0 0 inf\n1 0 0\n0 1 0\n3 0 1 2\n"})
         try {
             parse_off(text, "mesh.off");
         } catch (const InputError& error) {
@@ -219,7 +225,8 @@ StabilityOutcome not_finite(Missing)
             right &= touched ? std::isinf(after[6 * bv + d]) : after[6 * bv + d] == before[6 * bv + d];
     }
     out.pass = refused == 2 && right;
-    out.observed = fmt::format("{} of 2 files refused; {} node reported, {}", refused, report.unbounded_nodes, right ? "only its BVs infinite" : "WRONG BVs");
+    out.observed = fmt::format("{} of 2 files refused; {} node reported, {}", refused, report.unbounded_nodes,
+                               right ? "only its BVs infinite" : "WRONG BVs");
     state.frames.pop_back(); // what is not finite has no exact position to prove
     out.states.push_back(std::move(state));
     return out;
@@ -241,11 +248,13 @@ StabilityOutcome flat_boxes(Missing)
 
 StabilityOutcome one_triangle(Missing)
 {
-    StabilityState state{{{}, weights_of(2, {{1, 2}, {3, 1}, {1, 1}})}, {{shifted(1, 0, 0), AffineMap{{{0, -1, 0, 0}, {1, 0, 0, 0}, {0, 0, 1, 0}}}}}};
+    StabilityState state{{{}, weights_of(2, {{1, 2}, {3, 1}, {1, 1}})},
+                         {{shifted(1, 0, 0), AffineMap{{{0, -1, 0, 0}, {1, 0, 0, 0}, {0, 0, 1, 0}}}}}};
     state.surface.mesh.vertices = {{0.1, 0.2, 0.3}, {1, 0, 0}, {0, 1, 0}};
     state.surface.mesh.triangles = {{0, 1, 2}};
     const Bvh bvh = build_bvh(state.surface, 1);
-    StabilityOutcome out = proven_only(std::move(state), fmt::format("{} BV, {}", bvh.bvs.size(), bvh.bvs[0].is_leaf() ? "a leaf" : "no leaf"));
+    StabilityOutcome out = proven_only(
+        std::move(state), fmt::format("{} BV, {}", bvh.bvs.size(), bvh.bvs[0].is_leaf() ? "a leaf" : "no leaf"));
     out.pass = bvh.bvs.size() == 1 && bvh.bvs[0].is_leaf();
     return out;
 }
@@ -274,7 +283,8 @@ StabilityOutcome equal_centroids(Missing)
     state.surface.weights = weights_of(2, std::vector<std::vector<double>>(192, {1, 2}));
     state.frames = {{shifted(1, 0, 0), shifted(0, 1, 0)}};
     const Bvh bvh = build_bvh(state.surface, 1);
-    StabilityOutcome out = proven_only(std::move(state), fmt::format("{} levels for 64 triangles", bvh.level.size() - 1));
+    StabilityOutcome out =
+        proven_only(std::move(state), fmt::format("{} levels for 64 triangles", bvh.level.size() - 1));
     out.pass = bvh.level.size() - 1 == 7;
     return out;
 }
@@ -302,7 +312,8 @@ StabilityOutcome at_distance_h(Missing)
     DeformableSurface surface;
     surface.mesh.vertices = {{2, 0, 0}, {0.5, 0, 0}, {0, 0.5, 0}};
     surface.mesh.triangles = {{0, 1, 2}};
-    surface.weights = kernel_weights(surface.mesh, {{{0, 0, 0}, {3, 0, 0}}, 1}, 2); // the first vertex is exactly h from the first node
+    surface.weights = kernel_weights(surface.mesh, {{{0, 0, 0}, {3, 0, 0}}, 1},
+                                     2); // the first vertex is exactly h from the first node
     StabilityOutcome out;
     const Weights::Row row = surface.weights.of(0);
     out.pass = row.node.size() == 1 && row.node[0] == 1;

@@ -51,33 +51,41 @@ StabilityState flattened()
     // A box squeezed to a plane, a line and a point.
     StabilityState state{{box({1, 1, 1}, {2, 2, 2}), {}}, {}};
     state.surface.weights = kernel_weights(state.surface.mesh, {{{0, 0, 0}}, 1}, 4);
-    state.frames = {{AffineMap{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 0, 0.1}}}}, {AffineMap{{{1, 1, 1, 0}, {1, 1, 1, 0}, {1, 1, 1, 0}}}}, {AffineMap{{{0, 0, 0, 0.1}, {0, 0, 0, 0.2}, {0, 0, 0, 0.3}}}}};
+    state.frames = {{AffineMap{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 0, 0.1}}}},
+                    {AffineMap{{{1, 1, 1, 0}, {1, 1, 1, 0}, {1, 1, 1, 0}}}},
+                    {AffineMap{{{0, 0, 0, 0.1}, {0, 0, 0, 0.2}, {0, 0, 0, 0.3}}}}};
     return state;
 }
 
 StabilityOutcome collapsed_triangles(Missing)
 {
-    const Vec3 o(0, 0, 0), x(1, 0, 0), y(0, 1, 0), m(0.25, 0.25, 0), up(0.25, 0.25, 1), down(0.25, 0.25, -1), far(3, 3, 0);
+    const Vec3 o(0, 0, 0), x(1, 0, 0), y(0, 1, 0), m(0.25, 0.25, 0), up(0.25, 0.25, 1), down(0.25, 0.25, -1),
+        far(3, 3, 0);
     const TrianglePoints t{o, x, y};
-    StabilityOutcome out = all_of({{t, {m, m, m}, true},
-                                   {t, {up, up, up}, false},
-                                   {t, {up, down, up}, true},
-                                   {t, {up, down, m}, true},
-                                   {t, {up, up, Vec3(3, 3, -1)}, false},
-                                   {t, {m, far, m}, true},
-                                   {t, {Vec3(2, 0, 0), far, far}, false},
-                                   {{o, x, Vec3(0.5, 0, 0)}, {Vec3(0.5, -1, 0), Vec3(0.5, 1, 0), Vec3(0.5, 0, 0)}, true},
-                                   {{o, x, o}, {Vec3(0, 1e-300, 0), Vec3(1, 1e-300, 0), Vec3(0, 1e-300, 0)}, false},
-                                   {{m, m, m}, {m, m, m}, true},
-                                   {{m, m, m}, {up, up, up}, false}});
+    StabilityOutcome out =
+        all_of({{t, {m, m, m}, true},
+                {t, {up, up, up}, false},
+                {t, {up, down, up}, true},
+                {t, {up, down, m}, true},
+                {t, {up, up, Vec3(3, 3, -1)}, false},
+                {t, {m, far, m}, true},
+                {t, {Vec3(2, 0, 0), far, far}, false},
+                {{o, x, Vec3(0.5, 0, 0)}, {Vec3(0.5, -1, 0), Vec3(0.5, 1, 0), Vec3(0.5, 0, 0)}, true},
+                {{o, x, o}, {Vec3(0, 1e-300, 0), Vec3(1, 1e-300, 0), Vec3(0, 1e-300, 0)}, false},
+                {{m, m, m}, {m, m, m}, true},
+                {{m, m, m}, {up, up, up}, false}});
     out.states.push_back(flattened());
     return out;
 }
 
 // Pairs of two meshes that intersect, through cells: how often each is reported.
-std::map<std::pair<std::size_t, std::size_t>, int> through_cells(const TriangleMesh& a, const TriangleMesh& b, double cell)
+std::map<std::pair<std::size_t, std::size_t>, int> through_cells(const TriangleMesh& a, const TriangleMesh& b,
+                                                                 double cell)
 {
-    auto points = [](const TriangleMesh& m, std::size_t t) { return TrianglePoints{m.vertices[m.triangles[t][0]], m.vertices[m.triangles[t][1]], m.vertices[m.triangles[t][2]]}; };
+    auto points = [](const TriangleMesh& m, std::size_t t) {
+        return TrianglePoints{m.vertices[m.triangles[t][0]], m.vertices[m.triangles[t][1]],
+                              m.vertices[m.triangles[t][2]]};
+    };
     auto box_of = [&](const TriangleMesh& m, std::size_t t) {
         const TrianglePoints p = points(m, t);
         return Aabb{p[0].cwiseMin(p[1]).cwiseMin(p[2]), p[0].cwiseMax(p[1]).cwiseMax(p[2])};
@@ -125,7 +133,8 @@ StabilityOutcome duplicates(Missing)
     }
     StabilityOutcome out;
     out.pass = each_once && count.size() == 2 * twins && twins > 0;
-    out.observed = fmt::format("{} pairs, {} with their twin, {}", count.size(), 2 * twins, each_once ? "each once" : "SOME TWICE");
+    out.observed = fmt::format("{} pairs, {} with their twin, {}", count.size(), 2 * twins,
+                               each_once ? "each once" : "SOME TWICE");
     DeformableSurface surface{a, kernel_weights(a, {{{0, 0, 0}}, 1}, 4)};
     out.states.push_back({std::move(surface), {{identity_map}}});
     return out;
@@ -136,21 +145,24 @@ StabilityOutcome touching(Missing)
     const Vec3 o(0, 0, 0), x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
     const TrianglePoints t{o, x, y};
     const double third = 1.0 / 3;
-    return all_of({{t, {o, z, Vec3(-1, 0, 1)}, true},                             // a shared vertex
-                   {t, {o, x, z}, true},                                          // a shared edge
-                   {t, t, true},                                                  // the same
-                   {t, {Vec3(0.5, 0, 0), Vec3(0.5, -1, 0), Vec3(0.7, -1, 0)}, true}, // vertex on edge, coplanar
-                   {t, {Vec3(0.2, 0.2, 0), Vec3(2, 2, 0), Vec3(2, 3, 0)}, true},  // coplanar overlap
-                   {t, {Vec3(0.1, 0.1, 0), Vec3(0.2, 0.1, 0), Vec3(0.1, 0.2, 0)}, true}, // coplanar, inside
-                   {t, {Vec3(1 + 1e-16, 1, 0), Vec3(2, 0, 0), Vec3(2, 2, 0)}, false},    // coplanar, beside
-                   {t, {Vec3(third, third, 0), Vec3(third, third, 1), Vec3(0, 0, 1)}, true}, // vertex on face
-                   {t, {Vec3(third, third, 5e-324), Vec3(third, third, 1), Vec3(0, 0, 1)}, false}, // by the least there is
-                   {t, {Vec3(0, -1e-300, 0), Vec3(0, -1, 0), Vec3(1, -1, 0)}, false}});
+    return all_of(
+        {{t, {o, z, Vec3(-1, 0, 1)}, true},                                              // a shared vertex
+         {t, {o, x, z}, true},                                                           // a shared edge
+         {t, t, true},                                                                   // the same
+         {t, {Vec3(0.5, 0, 0), Vec3(0.5, -1, 0), Vec3(0.7, -1, 0)}, true},               // vertex on edge, coplanar
+         {t, {Vec3(0.2, 0.2, 0), Vec3(2, 2, 0), Vec3(2, 3, 0)}, true},                   // coplanar overlap
+         {t, {Vec3(0.1, 0.1, 0), Vec3(0.2, 0.1, 0), Vec3(0.1, 0.2, 0)}, true},           // coplanar, inside
+         {t, {Vec3(1 + 1e-16, 1, 0), Vec3(2, 0, 0), Vec3(2, 2, 0)}, false},              // coplanar, beside
+         {t, {Vec3(third, third, 0), Vec3(third, third, 1), Vec3(0, 0, 1)}, true},       // vertex on face
+         {t, {Vec3(third, third, 5e-324), Vec3(third, third, 1), Vec3(0, 0, 1)}, false}, // by the least there is
+         {t, {Vec3(0, -1e-300, 0), Vec3(0, -1, 0), Vec3(1, -1, 0)}, false}});
 }
 
 StabilityOutcome index_overflow(Missing)
 {
-    const std::vector<Aabb> boxes{{Vec3(-1e18, 0, 0), Vec3(-1e18, 1, 1)}, {Vec3(1e18, 0, 0), Vec3(1e18, 1, 1)}, {Vec3(0, 0, 0), Vec3(1e-3, 1e-3, 1e-3)}};
+    const std::vector<Aabb> boxes{{Vec3(-1e18, 0, 0), Vec3(-1e18, 1, 1)},
+                                  {Vec3(1e18, 0, 0), Vec3(1e18, 1, 1)},
+                                  {Vec3(0, 0, 0), Vec3(1e-3, 1e-3, 1e-3)}};
     const CellGrid grid = choose_grid(boxes, 1e-3);
     bool all = true;
     for (const Aabb& b : boxes)
@@ -159,7 +171,8 @@ StabilityOutcome index_overflow(Missing)
     const bool listed = !cells(grid, everywhere, 1000000) && !cells(grid, unknown, 1000000);
     StabilityOutcome out;
     out.pass = all && listed && grid.cell >= 1e18 / 0x1p31;
-    out.observed = fmt::format("cell {:.1e}; {}", grid.cell, listed ? "unbounded boxes go to the list" : "an unbounded box got cells");
+    out.observed = fmt::format("cell {:.1e}; {}", grid.cell,
+                               listed ? "unbounded boxes go to the list" : "an unbounded box got cells");
     return out;
 }
 

@@ -2,8 +2,8 @@
 // Hard arrangements of simulation nodes and weights.
 #include <numbers>
 
-#include "experiments/stability/bodies.hpp"
 #include "cinch/surface.hpp"
+#include "experiments/stability/bodies.hpp"
 
 namespace cinch {
 namespace {
@@ -53,7 +53,8 @@ StabilityOutcome coincident(Missing missing)
     const StepReport r = s.advance(0.5, implicit_steps(1.0 / 60, missing));
     StabilityOutcome out;
     out.pass = r.failure.empty() && is_finite(s) && s.body().notes.size() == 1;
-    out.observed = s.body().notes.empty() ? "no warning" : s.body().notes[0] + (is_finite(s) ? "; finite" : "; not finite");
+    out.observed =
+        s.body().notes.empty() ? "no warning" : s.body().notes[0] + (is_finite(s) ? "; finite" : "; not finite");
     out.states.push_back(state_of(s));
     return out;
 }
@@ -75,7 +76,8 @@ StabilityOutcome isolated(Missing missing)
     Integration exact = implicit_steps(dt, missing, 1e-9);
     const StepReport r = s.advance(steps * dt, exact);
     // Implicit Euler of a free fall: x0 + v t + g Δt² n (n + 1) / 2.
-    const Vec3 expected = Vec3(30, 0, 0) + steps * dt * Vec3(1, 2, 3) + 0.5 * dt * dt * steps * (steps + 1) * Vec3(0, 0, -10);
+    const Vec3 expected =
+        Vec3(30, 0, 0) + steps * dt * Vec3(1, 2, 3) + 0.5 * dt * dt * steps * (steps + 1) * Vec3(0, 0, -10);
     const double off = (at(s.positions(), 16) - expected).norm();
     const auto& map = s.frame()[16].m;
     bool identity = true;
@@ -100,7 +102,8 @@ StabilityOutcome few_nodes(Missing missing)
         add_elastic(s, 1e4, missing);
         s.add(make_gravity({0, 0, -9.81}));
         const StepReport r = s.advance(0.5, implicit_steps(1.0 / 60, missing));
-        bool finite = r.failure.empty() && is_finite(s) && std::isfinite(s.body().support[0]) && s.body().support[0] > 0;
+        bool finite =
+            r.failure.empty() && is_finite(s) && std::isfinite(s.body().support[0]) && s.body().support[0] > 0;
         if (n == 1) // falls as a whole
             finite &= std::abs(at(s.positions(), 0)[2] - s.body().rest[0][2] + 9.81 * 30 * 31 / 2 / 3600) < 1e-9;
         out.pass &= finite;
@@ -160,9 +163,13 @@ StabilityOutcome underflowing_weights(Missing)
         }
         out.pass &= sum == 1;
     }
-    out.pass &= surface.weights.of(0).weight[0] == 0.5 && surface.weights.of(1).weight.size() == 1 && std::abs(surface.weights.of(2).weight[0] - 0.75) < 1e-10;
-    out.observed = fmt::format("{} | {} | {:.3f} {:.3f}", surface.weights.of(0).weight[0], surface.weights.of(1).weight[0], surface.weights.of(2).weight[0], surface.weights.of(2).weight[1]);
-    out.states.push_back({surface, {{identity_map, AffineMap{{{0, 1, 0, 1}, {1, 0, 0, 1}, {0, 0, 2, 1}}}, identity_map}}});
+    out.pass &= surface.weights.of(0).weight[0] == 0.5 && surface.weights.of(1).weight.size() == 1 &&
+                std::abs(surface.weights.of(2).weight[0] - 0.75) < 1e-10;
+    out.observed =
+        fmt::format("{} | {} | {:.3f} {:.3f}", surface.weights.of(0).weight[0], surface.weights.of(1).weight[0],
+                    surface.weights.of(2).weight[0], surface.weights.of(2).weight[1]);
+    out.states.push_back(
+        {surface, {{identity_map, AffineMap{{{0, 1, 0, 1}, {1, 0, 0, 1}, {0, 0, 2, 1}}}, identity_map}}});
     return out;
 }
 
@@ -196,13 +203,15 @@ StabilityOutcome scales(Missing)
         }
     }
     out.pass = same && refused == 2;
-    out.observed = fmt::format("2^±300 {}; 1e±300 {}", same ? "the same bits" : "DIFFERS", refused == 2 ? "refused" : "ACCEPTED");
+    out.observed =
+        fmt::format("2^±300 {}; 1e±300 {}", same ? "the same bits" : "DIFFERS", refused == 2 ? "refused" : "ACCEPTED");
     return out;
 }
 
 StabilityOutcome checkerboard(Missing missing)
 {
-    // Nodal integration hardly sees a field that alternates from node to node: compare its stiffness per mass to that of a smooth shear.
+    // Nodal integration hardly sees a field that alternates from node to node: compare its stiffness per mass to that
+    // of a smooth shear.
     BodySimulation s = body_in_box({1, 1, 1}, lattice({1, 1, 1}, 8, 8, 8));
     add_elastic(s, 1e5, missing);
     auto quotient = [&](auto&& field) {
@@ -215,7 +224,8 @@ StabilityOutcome checkerboard(Missing missing)
         return whole(u).dot(whole(s.stiffness(u))) / mass;
     };
     const double smooth = quotient([](const Vec3& p) { return std::sin(std::numbers::pi * p[1]); });
-    const double alternating = quotient([](const Vec3& p) { return std::lround(8 * (p[0] + p[1] + p[2]) + 12) % 2 ? 1.0 : -1.0; });
+    const double alternating =
+        quotient([](const Vec3& p) { return std::lround(8 * (p[0] + p[1] + p[2]) + 12) % 2 ? 1.0 : -1.0; });
     StabilityOutcome out;
     out.pass = alternating > 10 * smooth;
     out.observed = fmt::format("{:.1f} times", alternating / smooth);

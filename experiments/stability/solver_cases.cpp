@@ -2,9 +2,9 @@
 // Hard steps.
 #include <numbers>
 
+#include "cinch/surface.hpp"
 #include "experiments/stability/bodies.hpp"
 #include "toolkit/simulate/scene.hpp"
-#include "cinch/surface.hpp"
 
 namespace cinch {
 namespace {
@@ -32,7 +32,8 @@ StabilityOutcome relax(BodySimulation s, Missing missing)
     StabilityOutcome out;
     const double left = s.potential() / start;
     out.pass = r.failure.empty() && is_finite(s) && left < 1e-2;
-    out.observed = r.failure.empty() ? fmt::format("{:.1e} of the energy left; {} Hessians mended", left, mended) : r.failure;
+    out.observed =
+        r.failure.empty() ? fmt::format("{:.1e} of the energy left; {} Hessians mended", left, mended) : r.failure;
     if (is_finite(s))
         out.states.push_back(state_of(s));
     return out;
@@ -63,7 +64,8 @@ StabilityOutcome collapsed(Missing missing)
     // To a needle, turned inside out along z; a thousandth off symmetry, which else would hold it there for ever.
     Field x = moved(s.body(), Vec3(0.9, 1e-3, -1e-3).asDiagonal(), Vec3::Zero());
     for (std::size_t i = 0; i < s.body().size(); ++i)
-        at(x, i) += 1e-3 * Vec3(std::sin(12.9 * static_cast<double>(i)), std::sin(78.2 * static_cast<double>(i)), std::sin(37.7 * static_cast<double>(i)));
+        at(x, i) += 1e-3 * Vec3(std::sin(12.9 * static_cast<double>(i)), std::sin(78.2 * static_cast<double>(i)),
+                                std::sin(37.7 * static_cast<double>(i)));
     s.place(x, Field(x.size(), 0));
     return relax(std::move(s), missing);
 }
@@ -123,8 +125,10 @@ StabilityOutcome scripted_turns(Missing missing)
         double off = 0;
         for (std::size_t k = 0; k < led.size(); ++k)
             off = std::max(off, (at(s.positions(), led[k]) - turning.apply(led_at[k], 0.1)).norm());
-        out.pass &= r.failure.empty() && is_finite(s) && off < 1e-12 && r.substeps >= degrees * std::numbers::pi / 180 / 0.4;
-        out.observed += fmt::format("{}{} degrees in {} steps{}", out.observed.empty() ? "" : ", ", degrees, r.substeps, r.failure.empty() ? "" : ": " + r.failure);
+        out.pass &=
+            r.failure.empty() && is_finite(s) && off < 1e-12 && r.substeps >= degrees * std::numbers::pi / 180 / 0.4;
+        out.observed += fmt::format("{}{} degrees in {} steps{}", out.observed.empty() ? "" : ", ", degrees, r.substeps,
+                                    r.failure.empty() ? "" : ": " + r.failure);
         out.states.push_back(state_of(s));
     }
     return out;
@@ -136,7 +140,11 @@ StabilityOutcome poisson_limit(Missing missing)
     int refused = 0;
     for (const double nu : {0.5, 0.6, -1.0, -2.0})
         try {
-            parse_scene(fmt::format(R"({{"duration":1,"bodies":[{{"surface":"santa","nodes":5}}],"effects":[{{"effect":"elastic","young":1,"poisson":{}}}]}})", nu), "scene", ".");
+            parse_scene(
+                fmt::format(
+                    R"({{"duration":1,"bodies":[{{"surface":"santa","nodes":5}}],"effects":[{{"effect":"elastic","young":1,"poisson":{}}}]}})",
+                    nu),
+                "scene", ".");
         } catch (const InputError&) {
             ++refused;
         }
@@ -159,7 +167,8 @@ StabilityOutcome no_time(Missing missing)
     for (const Integration& how : {implicit_steps(1.0 / 60, missing), explicit_steps(1.0 / 60)}) {
         s.advance(0, how);
         same &= s.positions() == x && s.time_s() == 0;
-        for (const double dt : {-0.1, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
+        for (const double dt :
+             {-0.1, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
             try {
                 s.advance(dt, how);
             } catch (const std::invalid_argument&) {
@@ -191,8 +200,10 @@ StabilityOutcome all_pinned(Missing missing)
             ++refused;
         }
     StabilityOutcome out;
-    out.pass = a.failure.empty() && b.failure.empty() && a.products == 0 && away(s, 2 * Mat3::Identity(), Vec3::Zero()) == 0 && refused == 2;
-    out.observed = fmt::format("{} products, {} m off; {} of 2 masses refused", a.products, away(s, 2 * Mat3::Identity(), Vec3::Zero()), refused);
+    out.pass = a.failure.empty() && b.failure.empty() && a.products == 0 &&
+               away(s, 2 * Mat3::Identity(), Vec3::Zero()) == 0 && refused == 2;
+    out.observed = fmt::format("{} products, {} m off; {} of 2 masses refused", a.products,
+                               away(s, 2 * Mat3::Identity(), Vec3::Zero()), refused);
     out.states.push_back(state_of(s));
     return out;
 }

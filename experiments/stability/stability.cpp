@@ -7,14 +7,14 @@
 #include <nlohmann/json.hpp>
 #include <tbb/info.h>
 
+#include "cinch/refit.hpp"
+#include "cinch/surface.hpp"
 #include "exact/verifier.hpp"
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/number.hpp"
 #include "experiments/report/progress.hpp"
 #include "experiments/report/provenance.hpp"
 #include "experiments/report/table.hpp"
-#include "cinch/refit.hpp"
-#include "cinch/surface.hpp"
 
 namespace cinch {
 namespace {
@@ -33,7 +33,9 @@ std::vector<StabilityCase> stability_cases()
     std::vector<StabilityCase> all;
     for (const auto& cases : {model_cases(), bound_cases(), solver_cases(), contact_cases()})
         all.insert(all.end(), cases.begin(), cases.end());
-    std::stable_sort(all.begin(), all.end(), [](const StabilityCase& a, const StabilityCase& b) { return a.name.substr(0, 2) < b.name.substr(0, 2); });
+    std::stable_sort(all.begin(), all.end(), [](const StabilityCase& a, const StabilityCase& b) {
+        return a.name.substr(0, 2) < b.name.substr(0, 2);
+    });
     return all;
 }
 
@@ -54,7 +56,8 @@ StabilityProof prove(const std::vector<StabilityState>& states)
                         refit(maps, supports);
                         const exact::FrameVerdict verdict = verifier.check(maps, method, kdop, supports);
                         proof.bounds += supports.size();
-                        proof.proven += static_cast<std::size_t>(std::count(verdict.failed.begin(), verdict.failed.end(), 0));
+                        proof.proven +=
+                            static_cast<std::size_t>(std::count(verdict.failed.begin(), verdict.failed.end(), 0));
                     }
                 }
     }
@@ -65,7 +68,9 @@ int stability(const StabilityOptions& options)
 {
     std::vector<StabilityCase> cases;
     for (StabilityCase& c : stability_cases())
-        if (options.cases.empty() || std::any_of(options.cases.begin(), options.cases.end(), [&](const std::string& part) { return c.name.find(part) != std::string::npos; }))
+        if (options.cases.empty() ||
+            std::any_of(options.cases.begin(), options.cases.end(),
+                        [&](const std::string& part) { return c.name.find(part) != std::string::npos; }))
             cases.push_back(std::move(c));
     if (cases.empty())
         throw InputError(fmt::format("--case {}: no case has that in its name (see --list)", options.cases.front()));
@@ -81,7 +86,8 @@ int stability(const StabilityOptions& options)
     auto report = [&](const std::string& name, const std::string& expected, const std::string& seen, bool pass) {
         failed += !pass;
         ++run;
-        output.add({{"experiment", "stability"}, {"case", name}, {"expected", expected}, {"observed", seen}, {"pass", pass}});
+        output.add(
+            {{"experiment", "stability"}, {"case", name}, {"expected", expected}, {"observed", seen}, {"pass", pass}});
         if (!options.output.records_only())
             fmt::print("{} {}\n     expected: {}\n     observed: {}\n", pass ? "pass" : "FAIL", name, expected, seen);
         std::fflush(stdout);
@@ -100,14 +106,16 @@ int stability(const StabilityOptions& options)
             report(c.name, c.expected, outcome.observed, outcome.pass);
             if (!outcome.states.empty()) {
                 const StabilityProof proof = prove(outcome.states);
-                report(c.name + ": bounds", proof_expected, observed(proof), proof.bounds > 0 && proof.proven == proof.bounds);
+                report(c.name + ": bounds", proof_expected, observed(proof),
+                       proof.bounds > 0 && proof.proven == proof.bounds);
             }
             progress.done(++done);
         }
     } catch (const Interrupted&) { // cases before it are kept
     }
     const bool is_complete = done == cases.size();
-    const Completeness completeness{0, 0, is_complete, is_complete ? "" : interrupted_after(done, cases.size(), "cases")};
+    const Completeness completeness{0, 0, is_complete,
+                                    is_complete ? "" : interrupted_after(done, cases.size(), "cases")};
     output.set(completeness);
     if (!is_complete) // those that came before had no way to know
         output.add({{"experiment", "stability"}, {"cases_done", done}, {"cases", cases.size()}});

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "experiments/report/record_output.hpp"
 #include "cinch/surface.hpp"
+#include "experiments/report/record_output.hpp"
 
 namespace cinch {
 
@@ -39,7 +39,8 @@ std::vector<StabilityCase> contact_cases();
 /// All of them, in this order.
 std::vector<StabilityCase> stability_cases();
 
-/// The bounds of a case's states by every method in float and double, 6 and 14 directions: how many, and how many are proven.
+/// The bounds of a case's states by every method in float and double, 6 and 14 directions: how many, and how many are
+/// proven.
 struct StabilityProof {
     std::size_t bounds = 0, proven = 0;
 };

@@ -3,9 +3,9 @@
 
 #include <catch2/catch.hpp>
 
+#include "cinch/bounds.hpp"
 #include "toolkit/bounds/bound_box.hpp"
 #include "toolkit/bounds/bound_vertex.hpp"
-#include "cinch/bounds.hpp"
 #include "toolkit/bounds/rounding.hpp"
 
 using namespace cinch;
@@ -22,7 +22,8 @@ struct Bounded {
     {
         BoundScratch scratch;
         std::vector<double> out(static_cast<std::size_t>(kdop));
-        bound_box({{centre, half}, node, {l, h}, {}, {}, Vec3::Zero(), {}, {}, 0, 2}, maps, method, rounding, axes_of(kdop), scratch, out);
+        bound_box({{centre, half}, node, {l, h}, {}, {}, Vec3::Zero(), {}, {}, 0, 2}, maps, method, rounding,
+                  axes_of(kdop), scratch, out);
         return out;
     }
 };

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <catch2/catch.hpp>
 
+#include "cinch/bounds.hpp"
 #include "tests/support.hpp"
 #include "toolkit/bounds/bound_box.hpp"
-#include "cinch/bounds.hpp"
 #include "toolkit/bounds/kernel/bound_kernel.hpp"
 #include "toolkit/bounds/readable.hpp"
 #include "toolkit/deform/kernel/targets.hpp"
@@ -16,21 +16,25 @@ namespace {
 constexpr Methods kinds = kernel_methods;
 
 struct Scene {
-    test::Example e = test::example(900, 70); // BVs of 5 to 70 simulation nodes, so blocks with and without repeated ones
+    test::Example e =
+        test::example(900, 70); // BVs of 5 to 70 simulation nodes, so blocks with and without repeated ones
     Bvh bvh = build_bvh(e.surface, 2);
 
-    template <class T> std::vector<double> bounds(Method kind, int kdop, Rounding rounding, int passes, bool remember = false, RestShape shape = RestShape::aabb) const
+    template <class T> std::vector<double> bounds(Method kind, int kdop, Rounding rounding, int passes,
+                                                  bool remember = false, RestShape shape = RestShape::aabb) const
     {
         const PackedBvh<T> packed = pack<T>(bvh, e.surface, choose_kinds(bvh, e.surface, kind, shape));
         ProjectedMaps<T> maps;
-        std::vector<T> remembered(remember ? 2 * packed.bvs.size() * static_cast<std::size_t>(kdop) : 0, std::numeric_limits<T>::quiet_NaN());
+        std::vector<T> remembered(remember ? 2 * packed.bvs.size() * static_cast<std::size_t>(kdop) : 0,
+                                  std::numeric_limits<T>::quiet_NaN());
         KernelScratch<T> scratch;
         std::vector<double> all;
         for (const auto& frame : e.frames) {
             project<T>(frame, packed.rest, kdop, rounding, maps);
             std::vector<double> supports(bvh.bvs.size() * static_cast<std::size_t>(kdop));
-            bound_packed<T>({packed.bvs, packed.node, packed.value, &maps, rounding, passes, nullptr, remember ? remembered.data() : nullptr}, 0, bvh.bvs.size(),
-                            scratch, supports);
+            bound_packed<T>({packed.bvs, packed.node, packed.value, &maps, rounding, passes, nullptr,
+                             remember ? remembered.data() : nullptr},
+                            0, bvh.bvs.size(), scratch, supports);
             all.insert(all.end(), supports.begin(), supports.end());
         }
         return all;
@@ -54,7 +58,8 @@ TEST_CASE("the same bits on every target of this machine")
                         REQUIRE(force_kernel_target(target));
                         REQUIRE(kernel_target() == target);
                         single.push_back(scene.bounds<float>(kind, kdop, rounding, passes, passes == 3));
-                        twice.push_back(scene.bounds<double>(kind, kdop, rounding, passes, passes == 3, passes == 1 ? RestShape::obb : RestShape::aabb));
+                        twice.push_back(scene.bounds<double>(kind, kdop, rounding, passes, passes == 3,
+                                                             passes == 1 ? RestShape::obb : RestShape::aabb));
                     }
                     force_kernel_target("");
                     INFO(name_of(kind) << ", k " << kdop << ", passes " << passes);
@@ -75,7 +80,8 @@ TEST_CASE("kernels agree with the readable form")
     BoundScratch scratch;
     for (Method kind : ladder_methods)
         for (int kdop : {6, 26}) {
-            const auto fast = scene.bounds<double>(kind, kdop, Rounding::proven, 1), single = scene.bounds<float>(kind, kdop, Rounding::proven, 1);
+            const auto fast = scene.bounds<double>(kind, kdop, Rounding::proven, 1),
+                       single = scene.bounds<float>(kind, kdop, Rounding::proven, 1);
             const auto k = static_cast<std::size_t>(kdop);
             std::vector<double> simple(k);
             std::size_t place = 0;
@@ -91,8 +97,9 @@ TEST_CASE("kernels agree with the readable form")
         }
 }
 
-// The kernels round what they read outward, and add their errors: never below the formula by more than its own rounding, and above it by
-// some units of the last place of a vertex's distance. One that gave away 1 % of the width would be far off.
+// The kernels round what they read outward, and add their errors: never below the formula by more than its own
+// rounding, and above it by some units of the last place of a vertex's distance. One that gave away 1 % of the width
+// would be far off.
 TEST_CASE("kernels agree with the formulas of the kinds that best chooses among, and best is the least of them")
 {
     const Scene scene;
@@ -100,7 +107,8 @@ TEST_CASE("kernels agree with the formulas of the kinds that best chooses among,
     for (const int kdop : {6, 26}) {
         const auto k = static_cast<std::size_t>(kdop);
         std::vector<double> simple(k), also(k);
-        const auto formula = [&](Method kind, std::size_t bv, const std::vector<AffineMap>& frame, double start, std::vector<double>& out) {
+        const auto formula = [&](Method kind, std::size_t bv, const std::vector<AffineMap>& frame, double start,
+                                 std::vector<double>& out) {
             const RestBv rest = scene.bvh.rest(bv);
             if (kind == Method::local)
                 readable_local(rest, frame, start, axes_of(kdop), out);
@@ -111,7 +119,8 @@ TEST_CASE("kernels agree with the formulas of the kinds that best chooses among,
         };
         for (const Method method : chosen_methods | Method::best) {
             const auto kinds_of = choose_kinds(scene.bvh, scene.e.surface, method);
-            const auto fast = scene.bounds<double>(method, kdop, Rounding::proven, 1), single = scene.bounds<float>(method, kdop, Rounding::proven, 1);
+            const auto fast = scene.bounds<double>(method, kdop, Rounding::proven, 1),
+                       single = scene.bounds<float>(method, kdop, Rounding::proven, 1);
             std::size_t place = 0, equal = 0;
             for (const auto& frame : scene.e.frames)
                 for (std::size_t bv = 0; bv < scene.bvh.bvs.size(); ++bv) {
@@ -139,7 +148,8 @@ TEST_CASE("kernels agree with the formulas of the kinds that best chooses among,
 
 TEST_CASE("the linear kind reproduces an affine motion of weights that are affine, up to the points' slack")
 {
-    // Two nodes whose weights go linearly from 0 to 1 along x: the field is quadratic only where the maps differ by a rotation.
+    // Two nodes whose weights go linearly from 0 to 1 along x: the field is quadratic only where the maps differ by a
+    // rotation.
     DeformableSurface surface;
     for (std::uint32_t i = 0; i <= 8; ++i) {
         surface.mesh.vertices.emplace_back(i / 8.0, 0.25 * (i % 2), 0);

@@ -6,8 +6,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "toolkit/bounds/rounding.hpp"
 #include "cinch/environment.hpp"
+#include "toolkit/bounds/rounding.hpp"
 
 #if defined(__SSE2__)
 #include <xmmintrin.h>
@@ -23,7 +23,8 @@ TEST_CASE("succ is at least the next double, at most two steps up")
         REQUIRE(s >= next);
         REQUIRE(s <= std::nextafter(next, infinite));
     };
-    for (double x : {0.0, -0.0, 1.0, -1.0, 0x1p-1022, -0x1p-1022, 0x1p-1074, -0x1p-1074, 0x1p-1021, 0x1.fffffffffffffp-1, 0x1p1000, -0x1p1000})
+    for (double x : {0.0, -0.0, 1.0, -1.0, 0x1p-1022, -0x1p-1022, 0x1p-1074, -0x1p-1074, 0x1p-1021,
+                     0x1.fffffffffffffp-1, 0x1p1000, -0x1p1000})
         check(x);
     for (int i = 0; i < 1000000; ++i) {
         const std::uint64_t bits = random();

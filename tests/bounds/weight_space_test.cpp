@@ -23,7 +23,10 @@ double best(const Space& space, const std::vector<double>& b)
     return best_lambda(space.view(), b, scratch);
 }
 
-double plain(const Space& space, const std::vector<double>& b, double lambda) { return dual_bound(space.view(), b, lambda, Rounding::plain); }
+double plain(const Space& space, const std::vector<double>& b, double lambda)
+{
+    return dual_bound(space.view(), b, lambda, Rounding::plain);
+}
 
 } // namespace
 
@@ -47,8 +50,8 @@ TEST_CASE("the best λ attains the optimum")
     CHECK(plain(space, b, 6) == 0.25 * 10 + 0.25 * 8 + 0.25 * 6 + 0.25 * 1);
     CHECK(plain(space, b, 8) > plain(space, b, 6));
     CHECK(plain(space, b, 5) > plain(space, b, 6));
-    CHECK(best({{0, 0}, {0.5, 0.5}}, {3, 9}) == 3); // Σ h = 1
-    CHECK(best({{0.5, 0.5}, {0.5, 0.5}}, {3, 9}) == 9); // Σ l = 1: any λ will do
+    CHECK(best({{0, 0}, {0.5, 0.5}}, {3, 9}) == 3);         // Σ h = 1
+    CHECK(best({{0.5, 0.5}, {0.5, 0.5}}, {3, 9}) == 9);     // Σ l = 1: any λ will do
     CHECK(best({{0.25, 0.25}, {0.25, 0.25}}, {3, 9}) == 3); // infeasible: still a λ
 }
 

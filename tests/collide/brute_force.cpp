@@ -18,7 +18,10 @@ struct Box {
     std::uint32_t triangle;
 };
 
-bool apart(const Box& a, const Box& b) { return (a.high.array() < b.low.array()).any() || (b.high.array() < a.low.array()).any(); }
+bool apart(const Box& a, const Box& b)
+{
+    return (a.high.array() < b.low.array()).any() || (b.high.array() < a.low.array()).any();
+}
 
 Box box_of(const TrianglePoints& p, std::uint32_t t)
 {
@@ -72,22 +75,25 @@ TrianglePoints corners_of(const DeformableSurface& surface, const Positions& pos
     return {positions[corner[0]], positions[corner[1]], positions[corner[2]]};
 }
 
-Pairs brute_force(const std::vector<const DeformableSurface*>& surfaces, const std::vector<Positions>& positions, const std::vector<bool>& left_out)
+Pairs brute_force(const std::vector<const DeformableSurface*>& surfaces, const std::vector<Positions>& positions,
+                  const std::vector<bool>& left_out)
 {
     Pairs pairs;
     std::vector<Box> whole;
     for (std::size_t i = 0; i < surfaces.size(); ++i)
         whole.push_back(box_of(*surfaces[i], positions[i]));
     auto test = [&](std::uint32_t i, const Box& a, std::uint32_t j, const Box& b) {
-        if (!apart(a, b) && intersect(corners_of(*surfaces[i], positions[i], a.triangle), corners_of(*surfaces[j], positions[j], b.triangle)))
+        if (!apart(a, b) && intersect(corners_of(*surfaces[i], positions[i], a.triangle),
+                                      corners_of(*surfaces[j], positions[j], b.triangle)))
             pairs.push_back({i, a.triangle, j, b.triangle});
     };
     for (std::uint32_t i = 0; i < surfaces.size(); ++i)
         for (std::uint32_t j = i + 1; j < surfaces.size(); ++j) {
-            if ((!left_out.empty() && (left_out[i] || left_out[j])) || surfaces[i]->mesh.triangles.empty() || surfaces[j]->mesh.triangles.empty() ||
-                apart(whole[i], whole[j]))
+            if ((!left_out.empty() && (left_out[i] || left_out[j])) || surfaces[i]->mesh.triangles.empty() ||
+                surfaces[j]->mesh.triangles.empty() || apart(whole[i], whole[j]))
                 continue;
-            const std::vector<Box> a = boxes_within(*surfaces[i], positions[i], whole[j]), b = boxes_within(*surfaces[j], positions[j], whole[i]);
+            const std::vector<Box> a = boxes_within(*surfaces[i], positions[i], whole[j]),
+                                   b = boxes_within(*surfaces[j], positions[j], whole[i]);
             // Sweep along x: each triangle meets those of the other body that begin while it lasts.
             for (std::size_t m = 0, n = 0; m < a.size() && n < b.size();)
                 if (a[m].low[0] <= b[n].low[0]) {
@@ -118,8 +124,8 @@ std::string difference(const Pairs& truth, const Pairs& found)
     out << truth.size() << " pairs, " << lost.size() << " lost, " << wrong.size() << " too many";
     for (const Pairs* some : {&lost, &wrong})
         if (!some->empty())
-            out << (some == &lost ? "; lost " : "; wrong ") << some->front().body_a << ":" << some->front().triangle_a << " " << some->front().body_b << ":"
-                << some->front().triangle_b;
+            out << (some == &lost ? "; lost " : "; wrong ") << some->front().body_a << ":" << some->front().triangle_a
+                << " " << some->front().body_b << ":" << some->front().triangle_b;
     return out.str();
 }
 
@@ -186,7 +192,8 @@ Pairs in_order_of_trees(const Collider& collider, const Pairs& truth)
                         leaves.emplace_back(p, q);
                         continue;
                     }
-                    const bool open_x = !x.is_leaf() && (y.is_leaf() || 2 * x.size >= y.size), open_y = !y.is_leaf() && (x.is_leaf() || 2 * y.size >= x.size);
+                    const bool open_x = !x.is_leaf() && (y.is_leaf() || 2 * x.size >= y.size),
+                               open_y = !y.is_leaf() && (x.is_leaf() || 2 * y.size >= x.size);
                     for (std::uint32_t c = 0; c < (open_x ? 2u : 1u); ++c)
                         for (std::uint32_t d = 0; d < (open_y ? 2u : 1u); ++d)
                             next.emplace_back(open_x ? x.child + c : p, open_y ? y.child + d : q);
@@ -195,7 +202,9 @@ Pairs in_order_of_trees(const Collider& collider, const Pairs& truth)
             for (const auto& [p, q] : leaves)
                 for (std::uint32_t s = 0; s < a.leaf(p).triangles; ++s)
                     for (std::uint32_t t = 0; t < b.leaf(q).triangles; ++t)
-                        if (const TrianglePair pair{i, a.triangle(a.leaf(p).first_triangle + s), j, b.triangle(b.leaf(q).first_triangle + t)}; wanted.count(pair))
+                        if (const TrianglePair pair{i, a.triangle(a.leaf(p).first_triangle + s), j,
+                                                    b.triangle(b.leaf(q).first_triangle + t)};
+                            wanted.count(pair))
                             out.push_back(pair);
         }
     return out;

@@ -17,7 +17,10 @@ namespace {
 using limits = std::numeric_limits<double>;
 
 Aabb box(const Vec3& a, const Vec3& b) { return {a.cwiseMin(b), a.cwiseMax(b)}; }
-bool overlap(const Aabb& a, const Aabb& b) { return (a.lower.array() <= b.upper.array()).all() && (b.lower.array() <= a.upper.array()).all(); }
+bool overlap(const Aabb& a, const Aabb& b)
+{
+    return (a.lower.array() <= b.upper.array()).all() && (b.lower.array() <= a.upper.array()).all();
+}
 
 std::vector<Aabb> random_boxes(std::size_t count, double scale, double size, const Vec3& offset)
 {
@@ -69,8 +72,9 @@ TEST_CASE("every overlapping pair of boxes is reported exactly once")
         double scale, size, cell;
         Vec3 offset;
     };
-    for (const Setting& s : {Setting{5, 1, 1, Vec3::Zero()}, Setting{5, 3, 0.7, Vec3(1e8, -1e8, 0)}, Setting{5, 2, 100, Vec3::Zero()},
-             Setting{100, 30, 1e-30, Vec3(1e18, 1e18, 0)}, Setting{1e-300, 1e-301, 1e-301, Vec3::Zero()}}) {
+    for (const Setting& s :
+         {Setting{5, 1, 1, Vec3::Zero()}, Setting{5, 3, 0.7, Vec3(1e8, -1e8, 0)}, Setting{5, 2, 100, Vec3::Zero()},
+          Setting{100, 30, 1e-30, Vec3(1e18, 1e18, 0)}, Setting{1e-300, 1e-301, 1e-301, Vec3::Zero()}}) {
         const std::vector<Aabb> boxes = random_boxes(600, s.scale, s.size, s.offset);
         CellGrid grid = choose_grid(boxes, s.cell);
         if (s.cell < s.size / 100) // checked for its indices below; here the cells must be few enough to visit
@@ -97,10 +101,19 @@ TEST_CASE("the cell is doubled until every index fits 32 bits, and no further")
     };
     const double m = limits::max();
     const Vec3 o = Vec3::Zero(), one = Vec3::Ones();
-    const Setting settings[] = {{{-1e18, 0, 1e18}, {1e18, 1, 1e18}, 1e-3}, {{1e18, 0, 0}, {1e18, 1, 0}, 1e-3}, {{-m, -m, 0}, {m, m, 0}, 1e-3},
-        {{m, m, m}, {m, m, m}, 1}, {o, one, 0x1p-1074}, {o, one, 0}, {o, one, -1}, {o, one, limits::quiet_NaN()},
-        {{-m, 0, 0}, {m, 0, 0}, limits::infinity()}, {o, {0x1p32 - 2, 0, 0}, 1}, {o, {0x1p32 - 1, 0, 0}, 1},
-        {o, {0x1p32, 0, 0}, 1}, {{5, 5, 5}, {5, 5, 5}, 0}};
+    const Setting settings[] = {{{-1e18, 0, 1e18}, {1e18, 1, 1e18}, 1e-3},
+                                {{1e18, 0, 0}, {1e18, 1, 0}, 1e-3},
+                                {{-m, -m, 0}, {m, m, 0}, 1e-3},
+                                {{m, m, m}, {m, m, m}, 1},
+                                {o, one, 0x1p-1074},
+                                {o, one, 0},
+                                {o, one, -1},
+                                {o, one, limits::quiet_NaN()},
+                                {{-m, 0, 0}, {m, 0, 0}, limits::infinity()},
+                                {o, {0x1p32 - 2, 0, 0}, 1},
+                                {o, {0x1p32 - 1, 0, 0}, 1},
+                                {o, {0x1p32, 0, 0}, 1},
+                                {{5, 5, 5}, {5, 5, 5}, 0}};
     for (const Setting& s : settings) {
         const std::vector<Aabb> boxes{box(s.a, s.a), box(s.b, s.b)};
         const CellGrid grid = choose_grid(boxes, s.cell);
@@ -165,7 +178,8 @@ TEST_CASE("indices never decrease with the coordinate")
     const std::vector<Aabb> boxes{box(Vec3::Constant(-1e6), Vec3::Constant(1e6))};
     const CellGrid grid = choose_grid(boxes, 0.1);
     for (int i = 0; i < 100000; ++i) {
-        const double x = random() % 2 ? uniform(random) : std::round(uniform(random)) * 0.1, next = std::nextafter(x, 1e7);
+        const double x = random() % 2 ? uniform(random) : std::round(uniform(random)) * 0.1,
+                     next = std::nextafter(x, 1e7);
         const auto range = cells(grid, box(Vec3(x, 0, 0), Vec3(next, 0, 0)), 2);
         REQUIRE(range.has_value());
         REQUIRE(range->first[0] <= range->last[0]);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-// Whether two triangles meet, decided without orientations of input points: triangle a, as a polygon in homogeneous integers, is
-// clipped against the half-spaces whose intersection is triangle b. Exact as long as Integer does not overflow.
+// Whether two triangles meet, decided without orientations of input points: triangle a, as a polygon in homogeneous
+// integers, is clipped against the half-spaces whose intersection is triangle b. Exact as long as Integer does not
+// overflow.
 
 #include <algorithm>
 #include <array>
@@ -23,7 +24,8 @@ using BigInt = boost::multiprecision::cpp_int;
 inline std::uint64_t low_zeros(unsigned __int128 x)
 {
     const auto low = static_cast<std::uint64_t>(x);
-    return static_cast<std::uint64_t>(low != 0 ? __builtin_ctzll(low) : 64 + __builtin_ctzll(static_cast<std::uint64_t>(x >> 64)));
+    return static_cast<std::uint64_t>(low != 0 ? __builtin_ctzll(low)
+                                               : 64 + __builtin_ctzll(static_cast<std::uint64_t>(x >> 64)));
 }
 
 inline Int128 greatest_common_divisor(Int128 a, Int128 b)
@@ -70,15 +72,24 @@ private:
     struct HalfSpace {
         V normal;
         Integer offset;
-        Integer value(const Point& p) const { return dot(normal, p.x) + offset * p.w; } // of the sign of the distance; inside is ≥ 0
+        Integer value(const Point& p) const
+        {
+            return dot(normal, p.x) + offset * p.w;
+        } // of the sign of the distance; inside is ≥ 0
     };
 
     static V minus(const V& a, const V& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
     static Integer dot(const V& a, const V& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-    static V cross(const V& a, const V& b) { return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}; }
+    static V cross(const V& a, const V& b)
+    {
+        return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+    }
     static bool is_zero(const V& a) { return a[0] == 0 && a[1] == 0 && a[2] == 0; }
 
-    static void add(std::vector<HalfSpace>& sides, const V& normal, const V& through) { sides.push_back({normal, -dot(normal, through)}); }
+    static void add(std::vector<HalfSpace>& sides, const V& normal, const V& through)
+    {
+        sides.push_back({normal, -dot(normal, through)});
+    }
     static void add_plane(std::vector<HalfSpace>& sides, const V& normal, const V& through)
     {
         add(sides, normal, through);
@@ -112,7 +123,8 @@ private:
         return dot(d, d);
     }
 
-    /// Sutherland–Hodgman. The hull of the result is the part of the hull of `polygon` in the half-space, also if it is degenerate.
+    /// Sutherland–Hodgman. The hull of the result is the part of the hull of `polygon` in the half-space, also if it is
+    /// degenerate.
     static std::vector<Point> clip(const std::vector<Point>& polygon, const HalfSpace& side)
     {
         std::vector<Point> inside;

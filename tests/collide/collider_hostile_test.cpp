@@ -32,7 +32,8 @@ std::vector<LazyOptions> some_options()
 }
 
 // `unknown`: bodies, per frame.
-void check_all(const Bodies& bodies, const std::vector<std::vector<std::uint32_t>>& unknown = {}, ClusterSize leaf = {16, 16})
+void check_all(const Bodies& bodies, const std::vector<std::vector<std::uint32_t>>& unknown = {},
+               ClusterSize leaf = {16, 16})
 {
     std::vector<Pairs> truth;
     for (std::size_t f = 0; f < bodies.frame.size(); ++f) {
@@ -54,7 +55,8 @@ void check_all(const Bodies& bodies, const std::vector<std::vector<std::uint32_t
         for (std::size_t f = 0; f < bodies.frame.size(); ++f) {
             collider.update(bodies.frame[f]);
             const Pairs found = collider.pairs();
-            INFO("k " << options.kdop << ", update " << static_cast<int>(options.update) << ", frame " << f << ": " << difference(truth[f], sorted(found)));
+            INFO("k " << options.kdop << ", update " << static_cast<int>(options.update) << ", frame " << f << ": "
+                      << difference(truth[f], sorted(found)));
             REQUIRE((sorted(found) == truth[f]));
             REQUIRE((collider.unknown() == (unknown.empty() ? std::vector<std::uint32_t>{} : unknown[f])));
             if (first.size() == f)
@@ -82,7 +84,8 @@ Bodies two(TriangleMesh a, TriangleMesh b, std::size_t nodes)
 
 } // namespace
 
-TEST_CASE("transforms that are not finite: the body is reported, no pair of the others is lost, and all is well in the next frame")
+TEST_CASE("transforms that are not finite: the body is reported, no pair of the others is lost, and all is well in the "
+          "next frame")
 {
     Dice dice(21);
     Bodies bodies;
@@ -91,7 +94,8 @@ TEST_CASE("transforms that are not finite: the body is reported, no pair of the 
     bodies.surface[3].weights.node_count = 13; // a simulation node without influence
     std::vector<Maps> good;
     for (int b = 0; b < 4; ++b)
-        good.push_back(around(dice, bodies.surface[static_cast<std::size_t>(b)].weights.node_count, dice.rotation(), 0.4 * dice.point(), 0.05));
+        good.push_back(around(dice, bodies.surface[static_cast<std::size_t>(b)].weights.node_count, dice.rotation(),
+                              0.4 * dice.point(), 0.05));
     std::vector<std::vector<std::uint32_t>> unknown;
     bodies.add_frame(good);
     unknown.push_back({});
@@ -165,7 +169,8 @@ TEST_CASE("places far from the origin, each body's own or the same, at rest and 
 TEST_CASE("scales from subnormal to where floats and doubles overflow")
 {
     Dice dice(23);
-    for (const double scale : {1e-320, 1e-300, 1e-160, 1e-60, 1e-45, 1e-38, 1e-20, 1e-6, 1e6, 1e20, 1e30, 1e37, 2e38, 1e39, 1e60, 1e150, 1e290}) {
+    for (const double scale : {1e-320, 1e-300, 1e-160, 1e-60, 1e-45, 1e-38, 1e-20, 1e-6, 1e6, 1e20, 1e30, 1e37, 2e38,
+                               1e39, 1e60, 1e150, 1e290}) {
         INFO("scale " << scale);
         TriangleMesh a = brain(60), b = fish(60);
         for (TriangleMesh* mesh : {&a, &b})
@@ -174,9 +179,11 @@ TEST_CASE("scales from subnormal to where floats and doubles overflow")
         Bodies at_rest = two(a, b, 6), by_motion = two(brain(60), fish(60), 6);
         for (int f = 0; f < 3; ++f) {
             const Eigen::Matrix3d r = dice.rotation();
-            at_rest.add_frame({around(dice, at_rest.surface[0].weights.node_count, r, 0.3 * scale * dice.point(), 0), // tiny ones have one
+            at_rest.add_frame({around(dice, at_rest.surface[0].weights.node_count, r, 0.3 * scale * dice.point(),
+                                      0), // tiny ones have one
                                Maps(at_rest.surface[1].weights.node_count, identity_map)});
-            by_motion.add_frame({around(dice, 6, scale * r, 0.3 * scale * dice.point(), 0), around(dice, 6, scale * dice.rotation(), Vec3::Zero(), 0)});
+            by_motion.add_frame({around(dice, 6, scale * r, 0.3 * scale * dice.point(), 0),
+                                 around(dice, 6, scale * dice.rotation(), Vec3::Zero(), 0)});
         }
         Bodies given;
         given.surface = by_motion.surface;
@@ -216,7 +223,9 @@ TEST_CASE("mirrored, singular and huge-against-small transforms")
 {
     Dice dice(24);
     Bodies bodies = two(brain(150), fish(150), 10);
-    const std::vector<Vec3> diagonals{{-1, 1, 1}, {-1, -1, -1}, {1, 1, 0}, {1, 0, 0}, {0, 0, 0}, {1e-9, 1, 1}, {1e5, 1, 1e-5}, {1e30, 1e-30, 1}, {1e-40, 1e-40, 1e-40}};
+    const std::vector<Vec3> diagonals{{-1, 1, 1},     {-1, -1, -1},     {1, 1, 0},
+                                      {1, 0, 0},      {0, 0, 0},        {1e-9, 1, 1},
+                                      {1e5, 1, 1e-5}, {1e30, 1e-30, 1}, {1e-40, 1e-40, 1e-40}};
     for (const Vec3& d : diagonals) {
         const Eigen::Matrix3d a = d.asDiagonal();
         for (const Eigen::Matrix3d& m : {a, Eigen::Matrix3d(dice.rotation() * a)}) {
@@ -239,9 +248,12 @@ TEST_CASE("faces that touch exactly: coplanar, by an edge, by a corner, and bodi
     bodies.surface.push_back(rigid(chessboard(6)));
     bodies.surface.push_back(rigid(box({2, 2, 2}, {4, 4, 4})));
     const Vec3 above(0, 0, 100);
-    for (const Vec3& t : {Vec3(2, 0, 0), Vec3(2, 1, 0), Vec3(2, 2, 0), Vec3(2, 2, 2), Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(2 + 0x1p-51, 0, 0), Vec3(2 - 0x1p-52, 0, 0)})
-        for (const Vec3& whole : {Vec3(0, 0, 0), Vec3(1 << 20, -(1 << 21), 3)}) // exact far away too, but for the last two
-            bodies.add_frame({Maps(1, moved_by(whole)), Maps(1, moved_by(whole + t)), Maps(1, moved_by(whole + Vec3(-3, -3, 1))),
+    for (const Vec3& t : {Vec3(2, 0, 0), Vec3(2, 1, 0), Vec3(2, 2, 0), Vec3(2, 2, 2), Vec3(0, 0, 0), Vec3(1, 0, 0),
+                          Vec3(2 + 0x1p-51, 0, 0), Vec3(2 - 0x1p-52, 0, 0)})
+        for (const Vec3& whole :
+             {Vec3(0, 0, 0), Vec3(1 << 20, -(1 << 21), 3)}) // exact far away too, but for the last two
+            bodies.add_frame({Maps(1, moved_by(whole)), Maps(1, moved_by(whole + t)),
+                              Maps(1, moved_by(whole + Vec3(-3, -3, 1))),
                               Maps(1, moved_by(whole + (t[0] > 1 ? above : t)))});
     CHECK(pairs_of(bodies) > 5000);
     check_all(bodies);
@@ -272,7 +284,9 @@ TEST_CASE("small bodies that touch a large one from outside: their origins are a
             at[static_cast<int>(b % 3)] = (b % 6 < 3 ? 1 : -1) * 2049;
             for (double& x : at)
                 x = std::round(x);
-            maps.push_back(bodies.surface[b].weights.node_count == 1 ? Maps(1, moved_by(whole + at)) : around(dice, 6, dice.rotation(), whole + at, 0.01));
+            maps.push_back(bodies.surface[b].weights.node_count == 1
+                               ? Maps(1, moved_by(whole + at))
+                               : around(dice, 6, dice.rotation(), whole + at, 0.01));
         }
         bodies.add_frame(maps);
     }
@@ -290,7 +304,8 @@ TEST_CASE("small bodies that touch a large one from outside: their origins are a
 TEST_CASE("nothing, one triangle, points and segments, all centroids alike, soups")
 {
     Dice dice(26);
-    const TriangleMesh unused{{{0, 0, 0}, {1, 1, 1}}, {}}, one{{{-1, -1, 0}, {1, -1, 0.1}, {0, 1, 0}}, {{0, 1, 2}}}, point{{{0, 0, 0.03}}, {{0, 0, 0}}};
+    const TriangleMesh unused{{{0, 0, 0}, {1, 1, 1}}, {}}, one{{{-1, -1, 0}, {1, -1, 0.1}, {0, 1, 0}}, {{0, 1, 2}}},
+        point{{{0, 0, 0.03}}, {{0, 0, 0}}};
     const TriangleMesh points = soup(dice, 300, 0.3);
     TriangleMesh alike, shells;
     for (std::uint32_t i = 0; i < 200; ++i) { // the same centroid for all, of one shape or another
@@ -301,14 +316,17 @@ TEST_CASE("nothing, one triangle, points and segments, all centroids alike, soup
         shells.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
     }
     Bodies bodies;
-    for (const TriangleMesh* mesh : std::initializer_list<const TriangleMesh*>{&unused, &one, &point, &alike, &points, &shells})
+    for (const TriangleMesh* mesh :
+         std::initializer_list<const TriangleMesh*>{&unused, &one, &point, &alike, &points, &shells})
         bodies.surface.push_back(patchy(dice, *mesh, 4, 3));
     bodies.surface.push_back({TriangleMesh{}, {}});
-    bodies.surface.push_back(rigid({{{5, 5, 5}, {0, 0, 0.01}, {0, 0.1, 0.01}, {0.1, 0, 0.01}}, {{1, 2, 3}, {1, 2, 3}, {3, 2, 1}, {1, 1, 2}}})); // twice the same
+    bodies.surface.push_back(rigid({{{5, 5, 5}, {0, 0, 0.01}, {0, 0.1, 0.01}, {0.1, 0, 0.01}},
+                                    {{1, 2, 3}, {1, 2, 3}, {3, 2, 1}, {1, 1, 2}}})); // twice the same
     for (const double strength : {0.0, 0.0, 0.1, 1.0, 0.0}) {
         std::vector<Maps> maps;
         for (const DeformableSurface& s : bodies.surface)
-            maps.push_back(around(dice, s.weights.node_count, Eigen::Matrix3d::Identity(), strength * dice.point(), strength));
+            maps.push_back(
+                around(dice, s.weights.node_count, Eigen::Matrix3d::Identity(), strength * dice.point(), strength));
         bodies.add_frame(maps);
     }
     CHECK(pairs_of(bodies) > 1000);
@@ -325,7 +343,8 @@ TEST_CASE("forty bodies in a crowd")
     for (int f = 0; f < 4; ++f) {
         std::vector<Maps> maps;
         for (std::size_t b = 0; b < 40; ++b)
-            maps.push_back(around(dice, 6, dice.rotation(), (f == 2 ? 8 : 2) * dice.point() + (b % 5 ? 0 : 1e5) * Vec3(1, 1, 1), 0.05));
+            maps.push_back(around(dice, 6, dice.rotation(),
+                                  (f == 2 ? 8 : 2) * dice.point() + (b % 5 ? 0 : 1e5) * Vec3(1, 1, 1), 0.05));
         bodies.add_frame(maps);
     }
     CHECK(pairs_of(bodies) > 2000);

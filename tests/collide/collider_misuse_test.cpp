@@ -12,14 +12,19 @@ using namespace cinch::test;
 namespace {
 
 template <class B, class S>
-concept can_be_added = requires(Collider collider, B bvh, S surface) { collider.add(std::forward<B>(bvh), std::forward<S>(surface)); };
+concept can_be_added = requires(Collider collider, B bvh, S surface)
+{
+    collider.add(std::forward<B>(bvh), std::forward<S>(surface));
+};
 
 static_assert(can_be_added<Bvh&, DeformableSurface&> && can_be_added<const Bvh&, const DeformableSurface&>);
-static_assert(can_be_added<Bvh, DeformableSurface&> && can_be_added<Bvh, const DeformableSurface&>, "a BVH that is moved in is kept");
-static_assert(!can_be_added<Bvh&, DeformableSurface> && !can_be_added<const Bvh&, const DeformableSurface> && !can_be_added<Bvh, DeformableSurface> &&
-                  !can_be_added<Bvh, const DeformableSurface>,
+static_assert(can_be_added<Bvh, DeformableSurface&> && can_be_added<Bvh, const DeformableSurface&>,
+              "a BVH that is moved in is kept");
+static_assert(!can_be_added<Bvh&, DeformableSurface> && !can_be_added<const Bvh&, const DeformableSurface> &&
+                  !can_be_added<Bvh, DeformableSurface> && !can_be_added<Bvh, const DeformableSurface>,
               "a surface is referred to");
-static_assert(!can_be_added<const Bvh, DeformableSurface&> && !can_be_added<const Bvh, DeformableSurface>, "what cannot be moved in is referred to");
+static_assert(!can_be_added<const Bvh, DeformableSurface&> && !can_be_added<const Bvh, DeformableSurface>,
+              "what cannot be moved in is referred to");
 
 Bodies some_bodies(std::size_t count)
 {
@@ -46,7 +51,8 @@ void check_refused(Collider& collider, const std::string& when)
         CHECK_THROWS_WITH(collider.unknown(), Catch::Contains(what));
         for (const Query query : {Query::pairs, Query::any, Query::leaves}) {
             std::size_t calls = 0;
-            CHECK_THROWS_WITH(collider.find(query, [&](std::span<const TrianglePair>) { return ++calls, true; }), Catch::Contains(what));
+            CHECK_THROWS_WITH(collider.find(query, [&](std::span<const TrianglePair>) { return ++calls, true; }),
+                              Catch::Contains(what));
             CHECK(calls == 0);
         }
     }
@@ -148,7 +154,9 @@ TEST_CASE("a sink that throws leaves the frame as it was")
     for (std::size_t f = 0; f < bodies.frame.size(); ++f) {
         collider.update(bodies.frame[f]);
         for (const Query query : {Query::pairs, Query::any, Query::leaves})
-            CHECK_THROWS_AS(collider.find(query, [](std::span<const TrianglePair>) -> bool { throw std::out_of_range("enough"); }), std::out_of_range);
+            CHECK_THROWS_AS(
+                collider.find(query, [](std::span<const TrianglePair>) -> bool { throw std::out_of_range("enough"); }),
+                std::out_of_range);
         CHECK((sorted(collider.pairs()) == bodies.truth()[f]));
     }
 }

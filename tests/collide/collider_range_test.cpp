@@ -53,7 +53,8 @@ struct Scene {
     std::vector<DeformableSurface> surface;
     Pairs truth;
 
-    template <class Integer> Scene(const std::vector<TrianglePoints>& a, const std::vector<TrianglePoints>& b, Integer&& exact)
+    template <class Integer>
+    Scene(const std::vector<TrianglePoints>& a, const std::vector<TrianglePoints>& b, Integer&& exact)
     {
         surface.push_back(rigid(mesh_of(a)));
         surface.push_back(rigid(mesh_of(b)));
@@ -72,12 +73,15 @@ Scene whole_numbers(std::uint64_t seed)
     std::array<std::vector<TrianglePoints>, 2> points;
     for (std::size_t b = 0; b < 2; ++b)
         for (int t = 0; t < 14; ++t) {
-            small[b].push_back(collapse(random_triangle(random, t % 7 == 2 || t % 7 == 3 ? 5 : 10), std::min(6, 1 + t % 7)));
+            small[b].push_back(
+                collapse(random_triangle(random, t % 7 == 2 || t % 7 == 3 ? 5 : 10), std::min(6, 1 + t % 7)));
             for (auto& v : small[b].back())
                 v[0] = std::clamp(v[0], -10, 10);
             points[b].push_back(doubles(small[b].back()));
         }
-    return {points[0], points[1], [&](std::size_t i, std::size_t j) { return Clipper<Int128>::intersect(integers(small[0][i]), integers(small[1][j])); }};
+    return {points[0], points[1], [&](std::size_t i, std::size_t j) {
+                return Clipper<Int128>::intersect(integers(small[0][i]), integers(small[1][j]));
+            }};
 }
 
 /// Random triangles, and others that touch these up to rounding.
@@ -89,7 +93,8 @@ Scene touching(std::uint64_t seed)
         points[0].push_back({random.point(), random.point(), random.point()});
         points[1].push_back(near_touching(random, points[0].back()));
     }
-    return {points[0], points[1], [&](std::size_t i, std::size_t j) { return exact_intersect(points[0][i], points[1][j]); }};
+    return {points[0], points[1],
+            [&](std::size_t i, std::size_t j) { return exact_intersect(points[0][i], points[1][j]); }};
 }
 
 std::vector<LazyOptions> some_options()
@@ -106,7 +111,10 @@ std::vector<LazyOptions> some_options()
     return all;
 }
 
-std::string text(const Powers& powers) { return std::to_string(powers[0]) + " " + std::to_string(powers[1]) + " " + std::to_string(powers[2]); }
+std::string text(const Powers& powers)
+{
+    return std::to_string(powers[0]) + " " + std::to_string(powers[1]) + " " + std::to_string(powers[2]);
+}
 
 std::vector<DeformableSurface> scaled(const std::vector<DeformableSurface>& surfaces, const Powers& powers)
 {
@@ -116,9 +124,10 @@ std::vector<DeformableSurface> scaled(const std::vector<DeformableSurface>& surf
     return out;
 }
 
-/// Queries one frame and compares with the pairs expected, or, where there are none given, with brute force on the vertices of evaluate_vertex.
-/// `may_be_unknown`: a body may be reported instead, so near the end of doubles.
-std::size_t check(Collider& collider, const std::vector<DeformableSurface>& surface, const std::vector<BodyFrame>& frame, const Pairs* expected, const std::string& what,
+/// Queries one frame and compares with the pairs expected, or, where there are none given, with brute force on the
+/// vertices of evaluate_vertex. `may_be_unknown`: a body may be reported instead, so near the end of doubles.
+std::size_t check(Collider& collider, const std::vector<DeformableSurface>& surface,
+                  const std::vector<BodyFrame>& frame, const Pairs* expected, const std::string& what,
                   bool may_be_unknown = false)
 {
     collider.update(frame);
@@ -172,7 +181,8 @@ void check_every_power(const Scene& scene, std::uint64_t seed)
                     powers[dice.below(3)] = static_cast<int>(dice.below(most - least + 1)) + least;
             const std::size_t turn = static_cast<std::size_t>(power - least + i) % options.size();
             const std::string what = "powers " + text(powers) + ", options " + std::to_string(turn);
-            const bool exact = is_exact(scene.surface[0].mesh.vertices, powers) && is_exact(scene.surface[1].mesh.vertices, powers);
+            const bool exact =
+                is_exact(scene.surface[0].mesh.vertices, powers) && is_exact(scene.surface[1].mesh.vertices, powers);
             const Pairs* const expected = exact ? &scene.truth : nullptr;
             const bool extreme = *std::max_element(powers.begin(), powers.end()) > 1000;
             const auto by = [](const Powers& e) {
@@ -199,7 +209,8 @@ void check_every_power(const Scene& scene, std::uint64_t seed)
                 check(own, rest, {{identity}, {identity}}, expected, "at rest, " + what, extreme);
                 const int back = std::clamp(-power, -1000, 1000); // to where it was before, or near it
                 const Maps undone = by({back, back, back});
-                check(own, rest, {{undone}, {undone}}, expected, "scaled back, " + what, extreme || power + back > 1000);
+                check(own, rest, {{undone}, {undone}}, expected, "scaled back, " + what,
+                      extreme || power + back > 1000);
             }
         }
 }

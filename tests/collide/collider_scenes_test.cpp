@@ -53,7 +53,8 @@ std::size_t check_all(const Bodies& bodies, const std::vector<Tested>& all = som
     std::size_t pairs = 0;
     for (const Pairs& some : truth)
         pairs += some.size();
-    std::map<std::pair<std::size_t, bool>, std::vector<Bvh>> trees_of; // by the size of leaves, and whether boxes will do
+    std::map<std::pair<std::size_t, bool>, std::vector<Bvh>>
+        trees_of; // by the size of leaves, and whether boxes will do
     for (const Tested& tested : all) {
         const bool boxes = tested.options.methods.within(box_methods);
         std::vector<Bvh>& trees = trees_of[{tested.leaf.triangles, boxes}];
@@ -65,8 +66,9 @@ std::size_t check_all(const Bodies& bodies, const std::vector<Tested>& all = som
         for (std::size_t f = 0; f < bodies.frame.size(); ++f) {
             collider.update(bodies.frame[f]);
             const Pairs found = sorted(collider.pairs());
-            INFO(name_of(tested.options.methods) << ", k " << tested.options.kdop << ", leaves of " << tested.leaf.triangles << ", frame " << f << ": "
-                                                 << difference(truth[f], found));
+            INFO(name_of(tested.options.methods)
+                 << ", k " << tested.options.kdop << ", leaves of " << tested.leaf.triangles << ", frame " << f << ": "
+                 << difference(truth[f], found));
             REQUIRE((found == truth[f]));
         }
     }
@@ -119,8 +121,14 @@ TEST_CASE("small rings and fish: pairs of brute force on frames of all of the mo
         INFO(scene);
         const bool alternatives = std::string(scene) == "santa-ring-5";
         const bool slow = std::string(scene) == "santa-ring-2" || std::string(scene) == "santa-ring-6"; // to simulate
-        pairs += check_all(simulated(scene, 0, quick ? 2 : slow && !thorough ? 30 : 91, thorough ? 3 : 9),
-                           thorough ? options : alternatives ? std::vector{options[0], options[3]} : std::vector{options[0]});
+        pairs += check_all(simulated(scene, 0,
+                                     quick               ? 2
+                                     : slow && !thorough ? 30
+                                                         : 91,
+                                     thorough ? 3 : 9),
+                           thorough       ? options
+                           : alternatives ? std::vector{options[0], options[3]}
+                                          : std::vector{options[0]});
         if (quick)
             return;
     }
@@ -135,7 +143,8 @@ TEST_CASE("large rings: pairs of brute force")
     std::size_t pairs = 0;
     for (const char* scene : {"santa-ring-7", "santa-ring-3", "santa-ring-4", "santa-ring-8"}) {
         INFO(scene);
-        pairs += check_all(simulated(scene, 0, 22, 7), thorough ? std::vector{some_options()[0], simple} : std::vector{simple});
+        pairs += check_all(simulated(scene, 0, 22, 7),
+                           thorough ? std::vector{some_options()[0], simple} : std::vector{simple});
         if (!thorough)
             break;
     }
@@ -147,7 +156,8 @@ TEST_CASE("scenes of one body: pairs of brute force with itself some time before
     const auto options = some_options();
     for (const char* scene : {"beam", "sheet", "skin", "twist-180", "brain-pull-65", "brain-pull-225", "brain-pull"}) {
         INFO(scene);
-        CHECK(check_all(against_its_past(simulated(scene, 0, quick ? 25 : 61, 12)), thorough ? options : std::vector{options[0]}) > (quick ? 50u : 100u));
+        CHECK(check_all(against_its_past(simulated(scene, 0, quick ? 25 : 61, 12)),
+                        thorough ? options : std::vector{options[0]}) > (quick ? 50u : 100u));
         if (!thorough && std::string(scene) == "brain-pull-65")
             break;
     }
@@ -176,7 +186,8 @@ TEST_CASE("a brain through a fish, and a folded brain through its coarse form: p
     small.surface.push_back(soft(mesh("brain_conte69_lh_3500.off"), 65));
     small.surface.push_back(soft(mesh("fish_blub_7106.obj"), 40));
     random_poses(small, 41, 6, 0.03);
-    CHECK(check_all(small, thorough ? some_options() : std::vector{some_options()[0], some_options()[2], some_options()[4]}) > 1000);
+    CHECK(check_all(small, thorough ? some_options()
+                                    : std::vector{some_options()[0], some_options()[2], some_options()[4]}) > 1000);
     Bodies large;
     large.surface.push_back(soft(mesh("brain_conte69_lh_30000.ply"), 200));
     large.surface.push_back(soft(mesh("fish_blub_8000.off"), 60));
@@ -200,14 +211,16 @@ TEST_CASE("a captured kick, given by its vertices, through itself at other times
         return;
     Bodies bodies;
     std::vector<Positions> pose;
-    for (const char* name : {"kick_000.ply", "kick_020.ply", "kick_040.ply", "kick_060.ply", "kick_080.ply", "kick_100.ply"}) {
+    for (const char* name :
+         {"kick_000.ply", "kick_020.ply", "kick_040.ply", "kick_060.ply", "kick_080.ply", "kick_100.ply"}) {
         const TriangleMesh mesh = read_mesh(*folder / "sequence" / name).mesh;
         pose.push_back(mesh.vertices);
         if (bodies.surface.empty())
             bodies.surface.assign(3, rigid(mesh));
     }
     for (std::size_t f = 0; f < pose.size(); ++f) {
-        std::vector<Positions> three{pose[f], pose[(f + 1) % 6], pose[f]}; // one of them beside itself, and for a frame in the same place
+        std::vector<Positions> three{pose[f], pose[(f + 1) % 6],
+                                     pose[f]}; // one of them beside itself, and for a frame in the same place
         for (Vec3& x : three[2])
             x += (f == 3 ? 0.0 : 0.05) * Vec3(1, 0.2, 0.7);
         bodies.add_positions(three);

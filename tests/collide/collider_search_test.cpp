@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A search for lost pairs: random scenes whose sizes, places, shapes and transforms are as unlike each other as numbers allow.
+// A search for lost pairs: random scenes whose sizes, places, shapes and transforms are as unlike each other as numbers
+// allow.
 #include <catch2/catch.hpp>
 
 #include "tests/collide/random_bodies.hpp"
@@ -13,11 +14,15 @@ namespace {
 /// A power of two: near 1, or where float or double overflow or underflow, or anywhere up to 2^±`most`.
 int power(Dice& dice, int most)
 {
-    static const std::vector<int> edges{-1040, -512, -340, -150, -127, -75, -63, -40, -24, 0, 0, 0, 24, 40, 42, 45, 60, 63, 84, 100, 104, 116, 120, 127, 340, 512};
+    static const std::vector<int> edges{-1040, -512, -340, -150, -127, -75, -63, -40, -24, 0,   0,   0,   24,
+                                        40,    42,   45,   60,   63,   84,  100, 104, 116, 120, 127, 340, 512};
     switch (dice.below(4)) {
-    case 0: return static_cast<int>(dice.below(5)) - 2;
-    case 1: return static_cast<int>(dice.below(static_cast<std::size_t>(2 * most + 1))) - most;
-    default: return std::clamp(dice.of(edges) + static_cast<int>(dice.below(7)) - 3, -most, most);
+    case 0:
+        return static_cast<int>(dice.below(5)) - 2;
+    case 1:
+        return static_cast<int>(dice.below(static_cast<std::size_t>(2 * most + 1))) - most;
+    default:
+        return std::clamp(dice.of(edges) + static_cast<int>(dice.below(7)) - 3, -most, most);
     }
 }
 
@@ -25,11 +30,21 @@ TriangleMesh shape(Dice& dice)
 {
     TriangleMesh mesh;
     switch (dice.below(7)) {
-    case 0: mesh = brain(40); break;
-    case 1: mesh = ring_sphere(20); break;
-    case 2: mesh = chessboard(3); break;
-    case 3: mesh = box({2, 2, 2}, {2, 2, 2}); break;
-    default: mesh = soup(dice, 1 + dice.below(24), std::exp2(-6 * dice.unit())); break;
+    case 0:
+        mesh = brain(40);
+        break;
+    case 1:
+        mesh = ring_sphere(20);
+        break;
+    case 2:
+        mesh = chessboard(3);
+        break;
+    case 3:
+        mesh = box({2, 2, 2}, {2, 2, 2});
+        break;
+    default:
+        mesh = soup(dice, 1 + dice.below(24), std::exp2(-6 * dice.unit()));
+        break;
     }
     if (dice.below(3) == 0) { // flat or a needle: each axis by a power of its own
         Vec3 by = Vec3::Ones();
@@ -54,11 +69,14 @@ struct Search {
         for (std::size_t b = 0; b < count; ++b) {
             TriangleMesh mesh = shape(dice);
             const double size = std::ldexp(1.0, power(dice, 300));
-            const Vec3 away = dice.below(2) ? Vec3(Vec3::Zero()) : Vec3(size * std::ldexp(1.0, static_cast<int>(dice.below(40))) * dice.point());
+            const Vec3 away = dice.below(2)
+                                  ? Vec3(Vec3::Zero())
+                                  : Vec3(size * std::ldexp(1.0, static_cast<int>(dice.below(40))) * dice.point());
             for (Vec3& v : mesh.vertices)
                 v = size * v + away;
             const auto nodes = static_cast<std::uint32_t>(1 + dice.below(9));
-            bodies.surface.push_back(nodes == 1 ? rigid(std::move(mesh)) : patchy(dice, std::move(mesh), nodes, 1 + dice.below(4)));
+            bodies.surface.push_back(nodes == 1 ? rigid(std::move(mesh))
+                                                : patchy(dice, std::move(mesh), nodes, 1 + dice.below(4)));
             to_world.push_back(Eigen::Matrix3d::Identity() / size);
             centre.push_back(away);
         }
@@ -70,10 +88,15 @@ struct Search {
     void add_frame(int common)
     {
         const double whole = std::ldexp(1.0, common);
-        const Vec3 place = dice.below(2) ? Vec3(Vec3::Zero()) : Vec3(whole * std::ldexp(1.0, static_cast<int>(dice.below(45))) * dice.point());
+        const Vec3 place = dice.below(2)
+                               ? Vec3(Vec3::Zero())
+                               : Vec3(whole * std::ldexp(1.0, static_cast<int>(dice.below(45))) * dice.point());
         std::vector<Maps> frame;
         for (std::size_t b = 0; b < bodies.surface.size(); ++b) {
-            const double size = dice.below(3) ? whole : whole * std::ldexp(1.0, dice.below(2) ? -static_cast<int>(dice.below(40)) : static_cast<int>(dice.below(20)));
+            const double size = dice.below(3)
+                                    ? whole
+                                    : whole * std::ldexp(1.0, dice.below(2) ? -static_cast<int>(dice.below(40))
+                                                                            : static_cast<int>(dice.below(20)));
             Eigen::Matrix3d a = size * dice.rotation() * to_world[b];
             if (dice.below(4) == 0)
                 a.row(static_cast<int>(dice.below(3))) *= std::ldexp(1.0, -static_cast<int>(dice.below(80)));
@@ -84,9 +107,11 @@ struct Search {
                 for (int r = 0; r < 3; ++r)
                     for (int s = 0; s < 3; ++s)
                         own(r, s) *= 1 + strength * dice.symmetric();
-                Vec3 t = place - own * centre[b] + 0.5 * size * strength * dice.point() + (dice.below(3) ? Vec3(Vec3::Zero()) : Vec3(0.3 * size * dice.point()));
+                Vec3 t = place - own * centre[b] + 0.5 * size * strength * dice.point() +
+                         (dice.below(3) ? Vec3(Vec3::Zero()) : Vec3(0.3 * size * dice.point()));
                 if (dice.below(20) == 0) // an entry of a size of its own
-                    own(static_cast<int>(dice.below(3)), static_cast<int>(dice.below(3))) *= std::ldexp(1.0, static_cast<int>(dice.below(80)) - 40);
+                    own(static_cast<int>(dice.below(3)), static_cast<int>(dice.below(3))) *=
+                        std::ldexp(1.0, static_cast<int>(dice.below(80)) - 40);
                 if (dice.below(40) == 0)
                     t[static_cast<int>(dice.below(3))] += std::ldexp(dice.symmetric(), power(dice, 300));
                 maps.push_back(affine(own, t));
@@ -113,8 +138,17 @@ struct Search {
 LazyOptions any_options(Dice& dice)
 {
     LazyOptions o;
-    static const std::vector<Methods> methods{Method::best, Method::best, Method::limited, Method::eq12, Method::local, Method::support, Method::linear, Method::convex,
-                                              Method::sphere, Method::vertices, Method::local | Method::support};
+    static const std::vector<Methods> methods{Method::best,
+                                              Method::best,
+                                              Method::limited,
+                                              Method::eq12,
+                                              Method::local,
+                                              Method::support,
+                                              Method::linear,
+                                              Method::convex,
+                                              Method::sphere,
+                                              Method::vertices,
+                                              Method::local | Method::support};
     o.methods = dice.of(methods);
     o.kdop = std::array{6, 14, 18, 26}[dice.below(4)];
     o.update = std::array{Update::lazy, Update::full, Update::automatic}[dice.below(3)];
@@ -150,10 +184,12 @@ TEST_CASE("no pair is lost and none is too many in random scenes of all sizes, f
                     left_out[b] = true;
                     ++unknown;
                 }
-                const Pairs found = sorted(collider.pairs()), truth = brute_force(bodies.surfaces(), positions[f], left_out);
+                const Pairs found = sorted(collider.pairs()),
+                            truth = brute_force(bodies.surfaces(), positions[f], left_out);
                 pairs += truth.size();
                 if (found != truth)
-                    FAIL("seed " << seed << ", frame " << f << ", " << name_of(options.methods) << ", k " << options.kdop << ", " << name_of(options.precision) << ", update "
+                    FAIL("seed " << seed << ", frame " << f << ", " << name_of(options.methods) << ", k "
+                                 << options.kdop << ", " << name_of(options.precision) << ", update "
                                  << static_cast<int>(options.update) << ": " << difference(truth, found));
                 REQUIRE(collider.any() == !truth.empty());
             }

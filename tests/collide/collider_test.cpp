@@ -5,8 +5,8 @@
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
-#include "tests/collide/random_bodies.hpp"
 #include "cinch/bounds.hpp"
+#include "tests/collide/random_bodies.hpp"
 #include "toolkit/collide/collider_parts.hpp"
 #include "toolkit/hierarchy/lazy_refit.hpp"
 
@@ -25,7 +25,8 @@ struct Leaf {
     ClusterSize size;
     std::size_t lanes;
 };
-constexpr Leaf every_leaf[] = {{{1, 3}, 4}, {{1, 3}, 16}, {{4, 4}, 4}, {{4, 6}, 8}, {{8, 8}, 8}, {{8, 8}, 16}, {{16, 16}, 16}};
+constexpr Leaf every_leaf[] = {{{1, 3}, 4}, {{1, 3}, 16}, {{4, 4}, 4},   {{4, 6}, 8},
+                               {{8, 8}, 8}, {{8, 8}, 16}, {{16, 16}, 16}};
 
 // Three bodies that overlap, teleport, part, come back as they were, and change shape.
 Bodies three_bodies(std::size_t vertices)
@@ -53,11 +54,14 @@ Bodies three_bodies(std::size_t vertices)
 // Says where: one line per option.
 std::string text(const LazyOptions& o)
 {
-    return name_of(o.methods) + ", k " + std::to_string(o.kdop) + ", " + std::string(name_of(o.precision)) + ", update " + std::to_string(static_cast<int>(o.update)) +
-           ", shape " + std::to_string(static_cast<int>(o.rest_shape)) + (o.keep_cut ? "" : ", front of pairs") + ", lanes " + std::to_string(o.lanes);
+    return name_of(o.methods) + ", k " + std::to_string(o.kdop) + ", " + std::string(name_of(o.precision)) +
+           ", update " + std::to_string(static_cast<int>(o.update)) + ", shape " +
+           std::to_string(static_cast<int>(o.rest_shape)) + (o.keep_cut ? "" : ", front of pairs") + ", lanes " +
+           std::to_string(o.lanes);
 }
 
-void check_in_order(const Bodies& bodies, const std::vector<Bvh>& trees, const LazyOptions& options, const std::vector<Pairs>& truth, std::vector<Pairs>& order)
+void check_in_order(const Bodies& bodies, const std::vector<Bvh>& trees, const LazyOptions& options,
+                    const std::vector<Pairs>& truth, std::vector<Pairs>& order)
 {
     INFO(text(options));
     Collider collider(options);
@@ -207,13 +211,15 @@ TEST_CASE("any and leaves: right, stopped where told, and no obstacle for what i
                 Collider collider(options);
                 for (std::size_t b = 0; b < trees.size(); ++b)
                     collider.add(trees[b], bodies.surface[b]);
-                std::vector<std::vector<std::uint32_t>> first_of(trees.size()); // triangle of the mesh to the first of its leaf
+                std::vector<std::vector<std::uint32_t>> first_of(
+                    trees.size()); // triangle of the mesh to the first of its leaf
                 for (std::size_t b = 0; b < trees.size(); ++b) {
                     first_of[b].resize(bodies.surface[b].mesh.triangles.size());
                     for (const Bv& bv : trees[b].bvs)
                         if (bv.is_leaf())
                             for (std::uint32_t t = 0; t < bv.triangle_count; ++t)
-                                first_of[b][trees[b].triangle[bv.first_triangle + t]] = trees[b].triangle[bv.first_triangle];
+                                first_of[b][trees[b].triangle[bv.first_triangle + t]] =
+                                    trees[b].triangle[bv.first_triangle];
                 }
                 for (std::size_t f = 0; f < bodies.frame.size(); ++f) {
                     INFO(text(options) << ", frame " << f);
@@ -244,11 +250,13 @@ TEST_CASE("any and leaves: right, stopped where told, and no obstacle for what i
                     const std::set<TrianglePair> all(leaves.begin(), leaves.end());
                     REQUIRE(all.size() == leaves.size());
                     for (const TrianglePair& p : truth[f])
-                        REQUIRE(all.count({p.body_a, first_of[p.body_a][p.triangle_a], p.body_b, first_of[p.body_b][p.triangle_b]}));
+                        REQUIRE(all.count(
+                            {p.body_a, first_of[p.body_a][p.triangle_a], p.body_b, first_of[p.body_b][p.triangle_b]}));
 
                     REQUIRE((sorted(collider.pairs()) == truth[f]));
                     calls = 0;
-                    REQUIRE(collider.find(Query::pairs, [&](std::span<const TrianglePair>) { return ++calls, false; }) == found);
+                    REQUIRE(collider.find(Query::pairs,
+                                          [&](std::span<const TrianglePair>) { return ++calls, false; }) == found);
                     REQUIRE(calls == (found ? 1 : 0));
                     if (f % 2)
                         REQUIRE((sorted(collider.pairs()) == truth[f]));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The filters where numbers overflow and underflow: at every power of two that a double has, and of two floats against each other.
+// The filters where numbers overflow and underflow: at every power of two that a double has, and of two floats against
+// each other.
 #include <cstring>
 
 #include <catch2/catch.hpp>
@@ -30,13 +31,15 @@ TrianglePoints scaled(TrianglePoints t, int power)
     return t;
 }
 
-// Triangles of floats about the place 0 with no errors of their own: what the kernel says of them without doubt must be true.
+// Triangles of floats about the place 0 with no errors of their own: what the kernel says of them without doubt must be
+// true.
 struct FloatLeaf {
     std::vector<TrianglePoints> truth;
     AlignedVector<float> slot;
     float dop[8] = {};
 
-    FloatLeaf(std::size_t lanes, std::vector<TrianglePoints> triangles) : truth(std::move(triangles)), slot((leaf_slot_floats(lanes) + 15) / 16 * 16, 0.0f)
+    FloatLeaf(std::size_t lanes, std::vector<TrianglePoints> triangles)
+        : truth(std::move(triangles)), slot((leaf_slot_floats(lanes) + 15) / 16 * 16, 0.0f)
     {
         auto* const corner = reinterpret_cast<std::uint8_t*>(slot.data() + 3 * lanes);
         std::size_t place = 0;
@@ -54,7 +57,8 @@ struct FloatLeaf {
                 }
             }
         for (std::size_t r = 0; r < 3; ++r) {
-            std::fill(slot.begin() + static_cast<std::ptrdiff_t>(r * lanes + place), slot.begin() + static_cast<std::ptrdiff_t>((r + 1) * lanes), slot[r * lanes]);
+            std::fill(slot.begin() + static_cast<std::ptrdiff_t>(r * lanes + place),
+                      slot.begin() + static_cast<std::ptrdiff_t>((r + 1) * lanes), slot[r * lanes]);
             for (std::size_t t = truth.size(); t < lanes; ++t)
                 corner[r * lanes + t] = corner[r * lanes];
         }
@@ -67,20 +71,29 @@ TrianglePoints about_zero(Random& random)
 {
     TrianglePoints t{random.point(), random.point(), random.point()};
     switch (random.below(7)) {
-    case 0: t[2] = -(t[0] + t[1]) / 2; break;
-    case 1: t[2] = -t[random.below(2)] * random.unit(); break; // an edge through 0
+    case 0:
+        t[2] = -(t[0] + t[1]) / 2;
+        break;
+    case 1:
+        t[2] = -t[random.below(2)] * random.unit();
+        break; // an edge through 0
     case 2:
         for (Vec3& v : t) // whole numbers
             v = (v * 4).array().round().matrix() / 4;
         t[2] = -(t[0] + t[1]) / 2;
         break;
-    case 3: t[random.below(3)] *= 0x1p-30; break;
-    case 4: t[2] = t[0] + random.unit() * (t[1] - t[0]); break; // a needle
+    case 3:
+        t[random.below(3)] *= 0x1p-30;
+        break;
+    case 4:
+        t[2] = t[0] + random.unit() * (t[1] - t[0]);
+        break; // a needle
     case 5:
         for (Vec3& v : t)
             v[2] *= 0x1p-20; // flat
         break;
-    default: break;
+    default:
+        break;
     }
     return t;
 }
@@ -103,7 +116,8 @@ TEST_CASE("triangle pairs agree with an exact clipper at every power of two, the
                     other = static_cast<int>(random.below(2095)) - 1074;
             const int greatest = std::min(10, 1 << std::min(10, 1023 - std::max({e[0], e[1], e[2]})));
             const auto small = [&](int how) {
-                SmallTriangle t = collapse(random_triangle(random.bits, how == 3 || how == 4 ? greatest / 2 : greatest), how);
+                SmallTriangle t =
+                    collapse(random_triangle(random.bits, how == 3 || how == 4 ? greatest / 2 : greatest), how);
                 for (auto& v : t)
                     for (int& x : v)
                         x = std::clamp(x, -greatest, greatest);
@@ -143,7 +157,8 @@ TEST_CASE("triangle pairs that touch up to rounding agree with an exact clipper 
     }
 }
 
-TEST_CASE("what floats decide without doubt is true at every power of two, alike for both triangles or not, on every target alike")
+TEST_CASE("what floats decide without doubt is true at every power of two, alike for both triangles or not, on every "
+          "target alike")
 {
     Random random{std::mt19937_64(8)};
     const auto targets = kernel_targets();
@@ -152,7 +167,9 @@ TEST_CASE("what floats decide without doubt is true at every power of two, alike
     for (int power = least; power <= most; power += stride())
         for (int i = 0; i < 60 * repeats(); ++i) {
             const std::size_t lanes = std::size_t{4} << random.below(3);
-            const int other = i % 3 == 0 ? power : i % 3 == 1 ? static_cast<int>(random.below(most - least)) + least : std::clamp(-power / 2 - 50, least, most);
+            const int other = i % 3 == 0   ? power
+                              : i % 3 == 1 ? static_cast<int>(random.below(most - least)) + least
+                                           : std::clamp(-power / 2 - 50, least, most);
             std::vector<TrianglePoints> p, q;
             for (std::size_t t = 0; t < std::max<std::size_t>(1, lanes / 3); ++t) {
                 p.push_back(scaled(about_zero(random), power));
@@ -175,18 +192,22 @@ TEST_CASE("what floats decide without doubt is true at every power of two, alike
                 if (n == 0)
                     first = found;
                 REQUIRE(std::equal(first.begin(), first.end(), found.begin(), found.end(),
-                                   [](const TriangleHit& x, const TriangleHit& y) { return x.i == y.i && x.j == y.j && x.doubtful == y.doubtful; }));
+                                   [](const TriangleHit& x, const TriangleHit& y) {
+                                       return x.i == y.i && x.j == y.j && x.doubtful == y.doubtful;
+                                   }));
             }
             auto next = first.begin();
             for (std::size_t j = 0; j < p.size(); ++j)
                 for (std::size_t k = 0; k < q.size(); ++k) {
-                    const bool listed = next != first.end() && next->i == j && next->j == k, doubtful = listed && next->doubtful;
+                    const bool listed = next != first.end() && next->i == j && next->j == k,
+                               doubtful = listed && next->doubtful;
                     next += listed;
                     if (doubtful)
                         continue;
                     ++(listed ? hits : misses);
                     if (intersect(a.truth[j], b.truth[k]) != listed)
-                        FAIL("powers " << power << " and " << other << ": " << (listed ? "found " : "lost ") << text(a.truth[j], b.truth[k]));
+                        FAIL("powers " << power << " and " << other << ": " << (listed ? "found " : "lost ")
+                                       << text(a.truth[j], b.truth[k]));
                 }
         }
     CHECK(hits > 100);

@@ -59,7 +59,8 @@ TEST_CASE("a power of two per axis does not change the answer, down to subnormal
         scales.push_back(Vec3::Constant(scale));
     for (int i = 0; i < 100000; ++i) {
         // Below 8·2^1020: coordinates are finite, differences are not.
-        const SmallTriangle a = collapse(random_triangle(random, 3), 1 + i % 6), b = collapse(random_triangle(random, 3), 1 + i / 6 % 6);
+        const SmallTriangle a = collapse(random_triangle(random, 3), 1 + i % 6),
+                            b = collapse(random_triangle(random, 3), 1 + i / 6 % 6);
         const bool expected = Clipper<Int128>::intersect(integers(a), integers(b));
         const Vec3& scale = scales[static_cast<std::size_t>(i) % scales.size()];
         if (intersect(doubles(a, scale), doubles(b, scale), &counts) != expected)
@@ -77,13 +78,15 @@ TEST_CASE("triangle pairs agree with an exact clipper in every order: all magnit
     std::array<int, 2> answers{};
     const auto cases = static_cast<int>(share_of(1500));
     for (int i = 0; i < cases; ++i) {
-        const double anchors[] = {0, 1, 0x1p-1074, 3 * 0x1p-1074, 1e-310, limits::min(), 1e-300, 1e300, limits::max(), 0.1};
+        const double anchors[] = {0,  1, 0x1p-1074, 3 * 0x1p-1074, 1e-310, limits::min(), 1e-300, 1e300, limits::max(),
+                                  0.1};
         const std::size_t few = 2 + random.below(3), offset = random.below(10);
         std::array<TrianglePoints, 2> t;
         for (TrianglePoints& triangle : t)
             for (Vec3& v : triangle)
                 for (double& x : v)
-                    x = anchors[(offset + 3 * random.below(few)) % 10] * (random.below(2) ? 1 : -1) * (random.below(3) ? 1 : random.unit());
+                    x = anchors[(offset + 3 * random.below(few)) % 10] * (random.below(2) ? 1 : -1) *
+                        (random.below(3) ? 1 : random.unit());
         const bool expected = exact_intersect(t[0], t[1]);
         ++answers[expected];
         check(t[0], t[1], expected);

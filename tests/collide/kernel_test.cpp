@@ -4,9 +4,9 @@
 
 #include <catch2/catch.hpp>
 
+#include "cinch/bounds.hpp"
 #include "tests/collide/random_bodies.hpp"
 #include "tests/support.hpp"
-#include "cinch/bounds.hpp"
 #include "toolkit/bounds/rounding.hpp"
 #include "toolkit/collide/kernel/box_kernel.hpp"
 #include "toolkit/collide/kernel/cluster_kernel.hpp"
@@ -28,8 +28,8 @@ Vec3 on(Vec3 x, double grid)
     return x;
 }
 
-// A leaf whose true vertices are off from the stored ones by as much as it says, all sums exact in double: stored ones are multiples of
-// 2^-28 below 4, errors of 2^-48, references of 2^-4 below 32.
+// A leaf whose true vertices are off from the stored ones by as much as it says, all sums exact in double: stored ones
+// are multiples of 2^-28 below 4, errors of 2^-48, references of 2^-4 below 32.
 struct Leaf {
     std::size_t lanes;
     std::vector<TrianglePoints> truth; // relative to the world
@@ -37,7 +37,8 @@ struct Leaf {
     float dop[8] = {};
 
     // `wanted`: triangles near the world's origin.
-    Leaf(Dice& dice, std::size_t l, const std::vector<TrianglePoints>& wanted, double error, double difference, const Vec3& reference, const Vec3& origin)
+    Leaf(Dice& dice, std::size_t l, const std::vector<TrianglePoints>& wanted, double error, double difference,
+         const Vec3& reference, const Vec3& origin)
         : lanes(l), truth(wanted.size()), slot((leaf_slot_floats(l) + 15) / 16 * 16, 0.0f)
     {
         auto* const corner = reinterpret_cast<std::uint8_t*>(slot.data() + 3 * lanes);
@@ -55,7 +56,8 @@ struct Leaf {
                 for (int r = 0; r < 3; ++r) {
                     slot[static_cast<std::size_t>(r) * lanes + place] = static_cast<float>(p[r]);
                     const double off = common[r] + on((dice.below(2) ? 1 : -1) * own * 0.999, 0x1p-48);
-                    truth[t][c][r] = origin[r] + reference[r] + static_cast<double>(slot[static_cast<std::size_t>(r) * lanes + place]) + off;
+                    truth[t][c][r] = origin[r] + reference[r] +
+                                     static_cast<double>(slot[static_cast<std::size_t>(r) * lanes + place]) + off;
                     most[r] = std::max(most[r], truth[t][c][r] - origin[r]);
                     least[r] = std::min(least[r], truth[t][c][r] - origin[r]);
                 }
@@ -80,22 +82,31 @@ struct Leaf {
 TrianglePoints almost_touching(Dice& dice, const TrianglePoints& t, double gap)
 {
     const std::size_t i = dice.below(3);
-    const Vec3 e = t[1] - t[0], f = t[2] - t[0], n = e.cross(f).normalized(), off = gap * dice.symmetric() * (dice.below(2) ? n : dice.point());
+    const Vec3 e = t[1] - t[0], f = t[2] - t[0], n = e.cross(f).normalized(),
+               off = gap * dice.symmetric() * (dice.below(2) ? n : dice.point());
     const double s = dice.unit(), along = dice.unit();
     const Vec3 inside = t[0] + s * e + (1 - s) * along * f, edge = t[i] + s * (t[(i + 1) % 3] - t[i]);
     const Vec3 d = dice.point(), g = dice.point();
     switch (dice.below(7)) {
-    case 0: return {inside + off, inside + off + n + 0.7 * d, inside + off + n + 0.7 * g};
-    case 1: return {edge + off, edge + off + d, edge + off + g};
-    case 2: return {edge + off + d, edge + off - d, edge + off + g};
-    case 3: return {t[i] + off, t[i] + off + d, t[i] + off + g};
-    case 4: return {t[i] + off, t[(i + 1) % 3] + off, g};                      // edge along edge
-    case 5: return {t[0] + off + 0.3 * e, t[1] + off - 0.2 * f, t[2] + gap * d}; // about coplanar
-    default: return {inside + off, inside + off + 1e-3 * d, inside + off + g};  // a sliver
+    case 0:
+        return {inside + off, inside + off + n + 0.7 * d, inside + off + n + 0.7 * g};
+    case 1:
+        return {edge + off, edge + off + d, edge + off + g};
+    case 2:
+        return {edge + off + d, edge + off - d, edge + off + g};
+    case 3:
+        return {t[i] + off, t[i] + off + d, t[i] + off + g};
+    case 4:
+        return {t[i] + off, t[(i + 1) % 3] + off, g}; // edge along edge
+    case 5:
+        return {t[0] + off + 0.3 * e, t[1] + off - 0.2 * f, t[2] + gap * d}; // about coplanar
+    default:
+        return {inside + off, inside + off + 1e-3 * d, inside + off + g}; // a sliver
     }
 }
 
-// The same beyond the corner that is the furthest of all along some axis, so that it is the leaves' boxes that almost touch.
+// The same beyond the corner that is the furthest of all along some axis, so that it is the leaves' boxes that almost
+// touch.
 TrianglePoints almost_touching_outside(Dice& dice, const std::vector<TrianglePoints>& all, double gap)
 {
     const auto r = static_cast<Eigen::Index>(dice.below(3));
@@ -118,8 +129,9 @@ struct Outcome {
 
 bool same(const std::vector<TriangleHit>& a, const std::vector<TriangleHit>& b)
 {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                      [](const TriangleHit& x, const TriangleHit& y) { return x.pair == y.pair && x.i == y.i && x.j == y.j && x.doubtful == y.doubtful; });
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const TriangleHit& x, const TriangleHit& y) {
+        return x.pair == y.pair && x.i == y.i && x.j == y.j && x.doubtful == y.doubtful;
+    });
 }
 
 } // namespace
@@ -132,8 +144,10 @@ TEST_CASE("what floats decide is true of every surface within their errors, on e
     const auto rounds = static_cast<int>(share_of(60000));
     for (int round = 0; round < rounds; ++round) {
         const std::size_t lanes = std::size_t{4} << dice.below(3), triangles = std::max<std::size_t>(1, lanes / 3);
-        const double error_a = on(std::exp2(-18 - 26 * dice.unit()), 0x1p-48), error_b = on(std::exp2(-18 - 26 * dice.unit()), 0x1p-48);
-        const double bend_a = on(2 * error_a * (dice.below(2) ? 1 : dice.unit()), 0x1p-46), bend_b = on(2 * error_b * (dice.below(2) ? 1 : dice.unit()), 0x1p-46);
+        const double error_a = on(std::exp2(-18 - 26 * dice.unit()), 0x1p-48),
+                     error_b = on(std::exp2(-18 - 26 * dice.unit()), 0x1p-48);
+        const double bend_a = on(2 * error_a * (dice.below(2) ? 1 : dice.unit()), 0x1p-46),
+                     bend_b = on(2 * error_b * (dice.below(2) ? 1 : dice.unit()), 0x1p-46);
         const double shift_error = dice.below(2) ? on(std::exp2(-12 - 28 * dice.unit()), 0x1p-48) : 0;
         const double gap = (error_a + error_b + shift_error + 0x1p-24) * std::exp2(8 * dice.symmetric());
         const double size = std::exp2(-4 * dice.unit());
@@ -145,7 +159,8 @@ TEST_CASE("what floats decide is true of every surface within their errors, on e
         }
         const bool outside = dice.below(4) == 0;
         for (std::size_t t = 0; t < triangles; ++t) {
-            of_b.push_back(!outside ? almost_touching(dice, of_a[dice.below(triangles)], gap) : almost_touching_outside(dice, of_a, gap));
+            of_b.push_back(!outside ? almost_touching(dice, of_a[dice.below(triangles)], gap)
+                                    : almost_touching_outside(dice, of_a, gap));
             for (Vec3& x : of_b.back())
                 x = x.cwiseMax(-3).cwiseMin(3);
         }
@@ -156,12 +171,15 @@ TEST_CASE("what floats decide is true of every surface within their errors, on e
             in.shift_error = succ(static_cast<float>(shift_error));
             for (std::size_t r = 0; r < 3; ++r) {
                 in.shift[r] = static_cast<float>(on(8 * dice.symmetric(), 0x1p-20));
-                between[static_cast<int>(r)] = static_cast<double>(in.shift[r]) + (dice.below(2) ? 1 : -1) * on(shift_error, 0x1p-48);
+                between[static_cast<int>(r)] =
+                    static_cast<double>(in.shift[r]) + (dice.below(2) ? 1 : -1) * on(shift_error, 0x1p-48);
             }
         }
-        const Vec3 reference_a = on(8 * dice.point(), 0x1p-4), reference_b = on(Vec3(-between + 2 * dice.point()), 0x1p-4);
+        const Vec3 reference_a = on(8 * dice.point(), 0x1p-4),
+                   reference_b = on(Vec3(-between + 2 * dice.point()), 0x1p-4);
         // Leaf a stands about the world's origin: its body's origin is at −reference.
-        const Leaf a(dice, lanes, of_a, error_a, bend_a, reference_a, -reference_a), b(dice, lanes, of_b, error_b, bend_b, reference_b, between - reference_a);
+        const Leaf a(dice, lanes, of_a, error_a, bend_a, reference_a, -reference_a),
+            b(dice, lanes, of_b, error_b, bend_b, reference_b, between - reference_a);
         const auto count = static_cast<std::uint32_t>(triangles);
         const ClusterPair pair{a.slot.data(), b.slot.data(), a.dop, b.dop, count, count};
         std::vector<TriangleHit> found;
@@ -180,15 +198,19 @@ TEST_CASE("what floats decide is true of every surface within their errors, on e
             REQUIRE(own_tests == tests);
         }
         force_kernel_target("");
-        REQUIRE(std::is_sorted(found.begin(), found.end(), [](const TriangleHit& x, const TriangleHit& y) { return std::pair(x.i, x.j) < std::pair(y.i, y.j); }));
+        REQUIRE(std::is_sorted(found.begin(), found.end(), [](const TriangleHit& x, const TriangleHit& y) {
+            return std::pair(x.i, x.j) < std::pair(y.i, y.j);
+        }));
         auto next = found.begin();
         for (std::size_t i = 0; i < triangles; ++i)
             for (std::size_t j = 0; j < triangles; ++j) {
-                const bool listed = next != found.end() && next->i == i && next->j == j, doubtful = listed && next->doubtful;
+                const bool listed = next != found.end() && next->i == i && next->j == j,
+                           doubtful = listed && next->doubtful;
                 next += listed;
                 ++(doubtful ? sum.doubtful : listed ? sum.hits : sum.misses);
                 if (!doubtful && intersect(a.truth[i], b.truth[j]) != listed)
-                    FAIL("round " << round << ", " << lanes << " lanes, errors " << error_a << " " << error_b << ": " << (listed ? "found" : "lost"));
+                    FAIL("round " << round << ", " << lanes << " lanes, errors " << error_a << " " << error_b << ": "
+                                  << (listed ? "found" : "lost"));
             }
         REQUIRE(next == found.end());
     }
@@ -209,11 +231,13 @@ TEST_CASE("k-DOPs are apart if and only if their supports say so, on every targe
         for (AlignedVector<float>* all : {&a, &b})
             for (std::size_t i = 0; i < bvs; ++i) {
                 for (std::size_t d = 0; d < half; ++d) {
-                    const double middle = std::round(4 * dice.symmetric()), width = std::round(8 * dice.unit()); // many touch exactly
+                    const double middle = std::round(4 * dice.symmetric()),
+                                 width = std::round(8 * dice.unit()); // many touch exactly
                     (*all)[i * floats + d] = static_cast<float>(middle + width + (dice.below(4) ? 0 : 1e-7));
                     (*all)[i * floats + side + d] = static_cast<float>(width - middle);
                     if (dice.below(100) == 0)
-                        (*all)[i * floats + d] = dice.below(2) ? std::numeric_limits<float>::infinity() : std::numeric_limits<float>::quiet_NaN();
+                        (*all)[i * floats + d] = dice.below(2) ? std::numeric_limits<float>::infinity()
+                                                               : std::numeric_limits<float>::quiet_NaN();
                 }
                 (*all)[i * floats + side - 1] = 16777215; // a stamp
             }
@@ -231,8 +255,11 @@ TEST_CASE("k-DOPs are apart if and only if their supports say so, on every targe
                 for (std::uint32_t j = t.b & ~BoxTest::both; j <= (t.b & ~BoxTest::both) + (t.b >> 31); ++j) {
                     bool apart = false;
                     for (std::size_t d = 0; d < half; ++d)
-                        apart = apart || static_cast<double>(a[i * floats + d]) + static_cast<double>(b[j * floats + side + d]) < 0 ||
-                                static_cast<double>(a[i * floats + side + d]) + static_cast<double>(b[j * floats + d]) < 0;
+                        apart =
+                            apart ||
+                            static_cast<double>(a[i * floats + d]) + static_cast<double>(b[j * floats + side + d]) <
+                                0 ||
+                            static_cast<double>(a[i * floats + side + d]) + static_cast<double>(b[j * floats + d]) < 0;
                     if (!apart)
                         expected.push_back({i, j});
                 }
@@ -241,9 +268,11 @@ TEST_CASE("k-DOPs are apart if and only if their supports say so, on every targe
             INFO(target << ", k " << kdop);
             REQUIRE(force_kernel_target(target));
             std::vector<BvPair> out(4 * tests.size());
-            out.resize(static_cast<std::size_t>(test_boxes({side, a.data(), b.data(), shift.data()}, tests, out.data()) - out.data()));
+            out.resize(static_cast<std::size_t>(
+                test_boxes({side, a.data(), b.data(), shift.data()}, tests, out.data()) - out.data()));
             force_kernel_target("");
-            REQUIRE(std::equal(out.begin(), out.end(), expected.begin(), expected.end(), [](const BvPair& x, const BvPair& y) { return x.a == y.a && x.b == y.b; }));
+            REQUIRE(std::equal(out.begin(), out.end(), expected.begin(), expected.end(),
+                               [](const BvPair& x, const BvPair& y) { return x.a == y.a && x.b == y.b; }));
         }
     }
 }
@@ -255,7 +284,8 @@ TEST_CASE("whole queries: the same list on every target")
     bodies.surface.push_back(soft(brain(300), 20));
     bodies.surface.push_back(patchy(dice, fish(300), 12, 4));
     for (int f = 0; f < 4; ++f)
-        bodies.add_frame({around(dice, 20, dice.rotation(), 0.3 * dice.point(), 0.1), around(dice, 12, dice.rotation(), f * 100 * dice.point(), 0.02)});
+        bodies.add_frame({around(dice, 20, dice.rotation(), 0.3 * dice.point(), 0.1),
+                          around(dice, 12, dice.rotation(), f * 100 * dice.point(), 0.02)});
     const std::vector<Bvh> trees = bodies.trees({16, 16});
     std::vector<std::vector<Pairs>> lists;
     std::vector<std::uint64_t> counts;
@@ -269,7 +299,8 @@ TEST_CASE("whole queries: the same list on every target")
         for (const auto& frame : bodies.frame) {
             collider.update(frame);
             lists.back().push_back(collider.pairs());
-            counts.back() = counts.back() * 31 + collider.counts().box_tests + 7 * collider.counts().triangle_tests + 11 * collider.counts().in_exact;
+            counts.back() = counts.back() * 31 + collider.counts().box_tests + 7 * collider.counts().triangle_tests +
+                            11 * collider.counts().in_exact;
         }
         force_kernel_target("");
         CHECK((lists.back() == lists[0]));

@@ -54,7 +54,8 @@ template <class Point> void check(const Points<Point>& p, OrientationCounts& cou
 
 std::uint64_t total(const OrientationCounts& c) { return c.in_double + c.in_expansion + c.in_integer; }
 
-/// Random, and in every third case a last point that is an affine combination of the others up to rounding and a few units.
+/// Random, and in every third case a last point that is an affine combination of the others up to rounding and a few
+/// units.
 template <class Point> Points<Point> points(std::mt19937_64& random, double scale)
 {
     std::uniform_real_distribution<double> uniform(-1, 1);
@@ -100,7 +101,8 @@ template <class Point> void check_stages()
         for (int i = 0; i < 1000; ++i)
             check<Point>(points<Point>(random, std::exp2(exponent / Point::RowsAtCompileTime)), underflowing);
     CHECK(underflowing.in_integer == 20000);
-    // The ends of the range of the expansions: coordinates of magnitude [scale, 2·scale], the last point nearly coplanar.
+    // The ends of the range of the expansions: coordinates of magnitude [scale, 2·scale], the last point nearly
+    // coplanar.
     for (double scale : {0x1p-300, 0x1p299}) {
         OrientationCounts counts;
         for (int i = 0; i < 5000; ++i) {
@@ -137,7 +139,8 @@ TEST_CASE("orientation is exact where the filter is closest to failing: small de
         for (int j = 0; j < 64; ++j) {
             const double x = 0.5 + i * 0x1p-53, y = 0.5 + j * 0x1p-53;
             check<Vec2>({Vec2(x, y), Vec2(12, 12), Vec2(24, 24)}, counts);
-            check<Vec3>({Vec3(x, y, 0.5), Vec3(12, 12, 12), Vec3(24, 24, 24), Vec3(17, 17, 18 + (i % 8) * 0x1p-48)}, counts);
+            check<Vec3>({Vec3(x, y, 0.5), Vec3(12, 12, 12), Vec3(24, 24, 24), Vec3(17, 17, 18 + (i % 8) * 0x1p-48)},
+                        counts);
             check<Vec3>({Vec3(x, y, 0.1), Vec3(12, 12, 0.7), Vec3(24, 24, -5.3), Vec3(7, 7, 3.3)}, counts);
         }
     CHECK(counts.in_expansion > 1000);
@@ -168,7 +171,8 @@ TEST_CASE("orientation of any finite doubles: random bits, and extreme ones")
     CHECK(counts.in_integer > 5000);
 
     using limits = std::numeric_limits<double>;
-    const double extremes[] = {0, 0x1p-1074, -0x1p-1074, limits::min(), -limits::min(), 1, -1, limits::max(), -limits::max(), 0x1p300, 0x1p-300};
+    const double extremes[] = {0,  0x1p-1074,     -0x1p-1074,     limits::min(), -limits::min(), 1,
+                               -1, limits::max(), -limits::max(), 0x1p300,       0x1p-300};
     for (int i = 0; i < 20000; ++i) {
         Points<Vec3> p;
         for (Vec3& v : p)
@@ -177,7 +181,8 @@ TEST_CASE("orientation of any finite doubles: random bits, and extreme ones")
         check<Vec3>(p, counts);
     }
     // The same for the expansions: factors from one end of their range to the other.
-    const double reached[] = {0, 1, -0x1.fffffffffffffp-1, 0x1p300, -0x1p300, 0x1.fffffffffffffp299, 0x1p-300, -0x1p-300, 0x1.fffffffffffffp-300};
+    const double reached[] = {0,        1,         -0x1.fffffffffffffp-1, 0x1p300, -0x1p300, 0x1.fffffffffffffp299,
+                              0x1p-300, -0x1p-300, 0x1.fffffffffffffp-300};
     OrientationCounts in_range;
     for (int i = 0; i < 20000; ++i) {
         Points<Vec3> p;
@@ -198,7 +203,8 @@ TEST_CASE("orientation of any finite doubles: random bits, and extreme ones")
     check<Vec3>({Vec3(-m, -m, 0), Vec3(m, m, 0), Vec3(-m, m, 0x1p-1074), Vec3(m, -m, -0x1p-1074)}, counts);
 }
 
-TEST_CASE("orientation has the signs of right-handed axes, counts what is decided at once, and is 0 for what is not finite")
+TEST_CASE(
+    "orientation has the signs of right-handed axes, counts what is decided at once, and is 0 for what is not finite")
 {
     const Vec3 o = Vec3::Zero(), x = Vec3::UnitX(), y = Vec3::UnitY(), z = Vec3::UnitZ();
     OrientationCounts counts;

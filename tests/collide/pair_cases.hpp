@@ -40,8 +40,8 @@ inline SmallTriangle random_triangle(std::mt19937_64& random, int greatest)
     return t;
 }
 
-/// Collapses a triangle: 1 to a point, 2 to a segment with a doubled end, 3 to one whose third point is in the middle, 4 into the plane
-/// x = y + z, 5 into the plane z = 1, 6 is the triangle itself.
+/// Collapses a triangle: 1 to a point, 2 to a segment with a doubled end, 3 to one whose third point is in the middle,
+/// 4 into the plane x = y + z, 5 into the plane z = 1, 6 is the triangle itself.
 inline SmallTriangle collapse(SmallTriangle t, int how)
 {
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -64,7 +64,8 @@ inline SmallTriangle collapse(SmallTriangle t, int how)
     return t;
 }
 
-inline constexpr std::array<std::array<std::size_t, 3>, 6> orders{{{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};
+inline constexpr std::array<std::array<std::size_t, 3>, 6> orders{
+    {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};
 
 /// How many of the 72 orders of vertices and triangles give another answer than the expected one.
 inline int wrong_orders(const TrianglePoints& a, const TrianglePoints& b, bool expected)
@@ -91,10 +92,14 @@ struct Random {
         const std::size_t i = below(3);
         const double s = unit();
         switch (below(4)) {
-        case 0: return t[i];
-        case 1: return t[i] + s * (t[(i + 1) % 3] - t[i]);
-        case 2: return t[0] + s * (t[1] - t[0]) + (1 - s) * unit() * (t[2] - t[0]);
-        default: return t[0] + 2 * symmetric() * (t[1] - t[0]) + 2 * symmetric() * (t[2] - t[0]);
+        case 0:
+            return t[i];
+        case 1:
+            return t[i] + s * (t[(i + 1) % 3] - t[i]);
+        case 2:
+            return t[0] + s * (t[1] - t[0]) + (1 - s) * unit() * (t[2] - t[0]);
+        default:
+            return t[0] + 2 * symmetric() * (t[1] - t[0]) + 2 * symmetric() * (t[2] - t[0]);
         }
     }
     /// Moved by a few units in the last place, or not.
@@ -107,17 +112,24 @@ struct Random {
     }
 };
 
-/// A triangle that touches `a` up to rounding: with a vertex on it, an edge through a point of it, two or three vertices in its plane.
+/// A triangle that touches `a` up to rounding: with a vertex on it, an edge through a point of it, two or three
+/// vertices in its plane.
 inline TrianglePoints near_touching(Random& random, const TrianglePoints& a)
 {
     const Vec3 x = random.point_of(a), d = random.point();
     switch (random.below(6)) {
-    case 0: return {random.nudged(x), random.point(), random.point()};
-    case 1: return {x + random.unit() * d, x - random.unit() * d, random.point()};
-    case 2: return {random.nudged(x), random.nudged(random.point_of(a)), random.point()};
-    case 3: return {random.nudged(x), random.nudged(random.point_of(a)), random.nudged(random.point_of(a))};
-    case 4: return {x, random.nudged(x), random.point_of(a)}; // a sliver
-    default: return {x, x, random.below(2) ? random.point() : random.point_of(a)}; // a segment
+    case 0:
+        return {random.nudged(x), random.point(), random.point()};
+    case 1:
+        return {x + random.unit() * d, x - random.unit() * d, random.point()};
+    case 2:
+        return {random.nudged(x), random.nudged(random.point_of(a)), random.point()};
+    case 3:
+        return {random.nudged(x), random.nudged(random.point_of(a)), random.nudged(random.point_of(a))};
+    case 4:
+        return {x, random.nudged(x), random.point_of(a)}; // a sliver
+    default:
+        return {x, x, random.below(2) ? random.point() : random.point_of(a)}; // a segment
     }
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <catch2/catch.hpp>
 
-#include "tests/collide/random_bodies.hpp"
 #include "cinch/bounds.hpp"
+#include "tests/collide/random_bodies.hpp"
 #include "toolkit/collide/pair_front.hpp"
 #include "toolkit/hierarchy/lazy_refit.hpp"
 
@@ -21,7 +21,8 @@ Leaves plain(const std::vector<BvPair>& pairs)
     return out;
 }
 
-bool overlap(const LazyRefit& a, const LazyRefit& b, std::uint32_t p, std::uint32_t q, std::size_t side, std::size_t axes)
+bool overlap(const LazyRefit& a, const LazyRefit& b, std::uint32_t p, std::uint32_t q, std::size_t side,
+             std::size_t axes)
 {
     for (std::size_t d = 0; d < axes; ++d)
         if (a.dop(p)[d] + b.dop(q)[side + d] < 0 || a.dop(p)[side + d] + b.dop(q)[d] < 0)
@@ -57,7 +58,8 @@ Leaves afresh(LazyRefit& a, LazyRefit& b, int kdop)
 
 } // namespace
 
-TEST_CASE("a front that is kept finds the leaf pairs of a traversal from the roots, in its order, and does not grow for ever")
+TEST_CASE(
+    "a front that is kept finds the leaf pairs of a traversal from the roots, in its order, and does not grow for ever")
 {
     Dice dice(91);
     const DeformableSurface one = soft(brain(300), 14), other = soft(fish(250), 9);
@@ -67,7 +69,8 @@ TEST_CASE("a front that is kept finds the leaf pairs of a traversal from the roo
             options.update = Update::lazy;
             options.keep_cut = false;
             options.kdop = kdop;
-            const Bvh of_one = build_bvh(one, leaf, RestDetail::inner), of_other = build_bvh(other, leaf, RestDetail::inner);
+            const Bvh of_one = build_bvh(one, leaf, RestDetail::inner),
+                      of_other = build_bvh(other, leaf, RestDetail::inner);
             LazyRefit a(of_one, one, options), b(of_other, other, options);
             PairFront kept;
             AlignedVector<float> no_shift(dop_floats(kdop), 0.0f);

@@ -107,11 +107,20 @@ inline TriangleMesh soup(Dice& dice, std::size_t triangles, double size)
             mesh.vertices.push_back(centre + size * dice.point());
         mesh.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
         switch (dice.below(8)) {
-        case 0: mesh.vertices[3 * t + 1] = mesh.vertices[3 * t]; break; // a segment
-        case 1: mesh.vertices[3 * t + 2] = mesh.vertices[3 * t + 1] = mesh.vertices[3 * t]; break; // a point
-        case 2: mesh.triangles.back()[2] = 3 * t + 1; break; // by its indices
-        case 3: mesh.vertices[3 * t + 2] = 0.5 * (mesh.vertices[3 * t] + mesh.vertices[3 * t + 1]); break;
-        default: break;
+        case 0:
+            mesh.vertices[3 * t + 1] = mesh.vertices[3 * t];
+            break; // a segment
+        case 1:
+            mesh.vertices[3 * t + 2] = mesh.vertices[3 * t + 1] = mesh.vertices[3 * t];
+            break; // a point
+        case 2:
+            mesh.triangles.back()[2] = 3 * t + 1;
+            break; // by its indices
+        case 3:
+            mesh.vertices[3 * t + 2] = 0.5 * (mesh.vertices[3 * t] + mesh.vertices[3 * t + 1]);
+            break;
+        default:
+            break;
         }
     }
     return mesh;

@@ -61,7 +61,8 @@ TEST_CASE("spatial hashing finds the pairs of brute force: bodies, crowds, soups
     for (int round = 0; round < 12; ++round) {
         std::vector<TriangleMesh> meshes;
         for (std::size_t b = 0; b < 2 + dice.below(4); ++b)
-            meshes.push_back(moved(dice.below(2) ? brain(60) : soup(dice, 120, std::exp2(-6 + 8 * dice.unit())), dice.rotation(), 0.5 * dice.point()));
+            meshes.push_back(moved(dice.below(2) ? brain(60) : soup(dice, 120, std::exp2(-6 + 8 * dice.unit())),
+                                   dice.rotation(), 0.5 * dice.point()));
         if (round % 3 == 0)
             meshes.push_back({});
         pairs += check(hash, meshes);
@@ -78,7 +79,8 @@ TEST_CASE("spatial hashing: giants among dwarfs, far away, tiny and huge, on the
         for (const double far : {0.0, 1e5, 1e15}) {
             const Vec3 away = far < 1e10 || scale < 1e200 ? Vec3(scale * far * Vec3(1, -0.5, 0.25)) : Vec3(0, 0, 0);
             std::vector<TriangleMesh> meshes{brain(50), fish(50), soup(dice, 60, 3e-3)};
-            meshes[2].vertices.insert(meshes[2].vertices.end(), {{-900, -800, 0.1}, {1000, -900, 0.2}, {10, 900, -0.1}});
+            meshes[2].vertices.insert(meshes[2].vertices.end(),
+                                      {{-900, -800, 0.1}, {1000, -900, 0.2}, {10, 900, -0.1}});
             const auto n = static_cast<std::uint32_t>(meshes[2].vertices.size());
             meshes[2].triangles.push_back({n - 3, n - 2, n - 1});
             for (TriangleMesh& mesh : meshes)
@@ -86,17 +88,20 @@ TEST_CASE("spatial hashing: giants among dwarfs, far away, tiny and huge, on the
             pairs += check(hash, meshes);
         }
     for (const Vec3& t : {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(6, 6, 0), Vec3(0.5, 0.5, 0), Vec3(6 + 0x1p-50, 0, 0)})
-        pairs += check(hash, {chessboard(6), moved(chessboard(6), Eigen::Matrix3d::Identity(), t), moved(box({4, 4, 4}, {4, 4, 4}), Eigen::Matrix3d::Identity(), {2, 2, 2})});
+        pairs += check(hash, {chessboard(6), moved(chessboard(6), Eigen::Matrix3d::Identity(), t),
+                              moved(box({4, 4, 4}, {4, 4, 4}), Eigen::Matrix3d::Identity(), {2, 2, 2})});
     CHECK(pairs > 2000);
 }
 
 TEST_CASE("spatial hashing: what is not finite meets everything, whichever of its coordinates it is")
 {
     SpatialHash hash;
-    for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()})
+    for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
+                             -std::numeric_limits<double>::infinity()})
         for (const std::size_t vertex : {0u, 1u, 2u, 17u, 29u})
             for (const int axis : {0, 1, 2}) {
-                std::vector<TriangleMesh> meshes{ring_sphere(30), moved(ring_sphere(20), Eigen::Matrix3d::Identity(), {1.5, 0.2, 0}),
+                std::vector<TriangleMesh> meshes{ring_sphere(30),
+                                                 moved(ring_sphere(20), Eigen::Matrix3d::Identity(), {1.5, 0.2, 0}),
                                                  moved(ring_sphere(20), Eigen::Matrix3d::Identity(), {0, 9, 0})};
                 meshes[0].vertices[vertex][axis] = bad;
                 meshes[2].vertices[vertex % 20][axis] = bad;

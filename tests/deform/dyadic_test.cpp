@@ -8,8 +8,8 @@
 #include <catch2/catch.hpp>
 #include <rapidcheck/catch.h>
 
-#include "toolkit/deform/dyadic.hpp"
 #include "cinch/surface.hpp"
+#include "toolkit/deform/dyadic.hpp"
 
 using namespace cinch;
 
@@ -30,14 +30,15 @@ void check_dyadic(const std::vector<double>& weights)
 
 TEST_CASE("rounded weights are multiples of 2^-53 and sum to exactly 1, whatever comes in")
 {
-    rc::prop("random mantissas over the whole exponent range", [](std::vector<std::pair<std::uint32_t, std::uint8_t>> parts) {
-        RC_PRE(!parts.empty());
-        std::vector<double> weights;
-        for (const auto& [mantissa, exponent] : parts)
-            weights.push_back(std::ldexp(mantissa + 1.0, exponent - 128));
-        round_dyadic(weights);
-        check_dyadic(weights);
-    });
+    rc::prop("random mantissas over the whole exponent range",
+             [](std::vector<std::pair<std::uint32_t, std::uint8_t>> parts) {
+                 RC_PRE(!parts.empty());
+                 std::vector<double> weights;
+                 for (const auto& [mantissa, exponent] : parts)
+                     weights.push_back(std::ldexp(mantissa + 1.0, exponent - 128));
+                 round_dyadic(weights);
+                 check_dyadic(weights);
+             });
     rc::prop("equal weights", [] {
         std::vector<double> weights(*rc::gen::inRange<std::size_t>(1, 3000), 0.1);
         round_dyadic(weights);
@@ -121,7 +122,8 @@ TEST_CASE("normalising is reported where it changes weights by more than roundin
             one.step = 1.0 / 255;
             int left = 255;
             for (std::size_t j = 0; j < n; ++j) {
-                const int part = j + 1 == n ? left : static_cast<int>(random() % static_cast<std::uint64_t>(left / 2 + 1));
+                const int part =
+                    j + 1 == n ? left : static_cast<int>(random() % static_cast<std::uint64_t>(left / 2 + 1));
                 left -= part;
                 one.weight.push_back(part / 255.0);
             }
@@ -141,13 +143,16 @@ TEST_CASE("normalising is reported where it changes weights by more than roundin
         CHECK(report.normalised == 0);
         CHECK(report.largest_change == 0);
 
-        const double scale = uniform(0, 1) < 0.5 ? 1 + std::exp(uniform(std::log(2e-6), std::log(9.0))) : 1 - std::exp(uniform(std::log(2e-6), std::log(0.9))); // from far below 0.001
+        const double scale = uniform(0, 1) < 0.5
+                                 ? 1 + std::exp(uniform(std::log(2e-6), std::log(9.0)))
+                                 : 1 - std::exp(uniform(std::log(2e-6), std::log(0.9))); // from far below 0.001
         for (double& w : one.weight)
             w *= scale;
         to_dyadic(one, &report);
         INFO(scale << " of " << n);
         CHECK(report.normalised == 1);
         CHECK(report.largest_change == Approx(std::abs(1 / scale - 1)).epsilon(0.5).margin(2 * sum_rounding(n)));
-        CHECK((report.beyond_steps == 1) == (std::abs(scale - 1) > sum_rounding(n) + 0.5 * one.step * static_cast<double>(n)));
+        CHECK((report.beyond_steps == 1) ==
+              (std::abs(scale - 1) > sum_rounding(n) + 0.5 * one.step * static_cast<double>(n)));
     }
 }

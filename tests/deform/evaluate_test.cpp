@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <catch2/catch.hpp>
 
-#include "tests/support.hpp"
 #include "cinch/deform.hpp"
+#include "tests/support.hpp"
 
 using namespace cinch;
 

@@ -37,7 +37,8 @@ TEST_CASE("the ingredients are the standard ones")
     const Vec3 twisted = Eigen::AngleAxisd(1.2 * 0.9, Vec3::UnitZ()) * p;
     CHECK((moved({1, 0, 0, 0}, p) - twisted).norm() < 1e-14);
     const double phi = 0.9 * 0.7, r = 1 / 0.9;
-    CHECK((moved({0, 1, 0, 0}, p) - Vec3((r + 0.9) * std::sin(phi), -0.4, (r + 0.9) * std::cos(phi) - r)).norm() < 1e-14);
+    CHECK((moved({0, 1, 0, 0}, p) - Vec3((r + 0.9) * std::sin(phi), -0.4, (r + 0.9) * std::cos(phi) - r)).norm() <
+          1e-14);
     const Vec3 pulled = p + 0.8 * std::exp(-4 * (p - Vec3(1.2, 0, 0)).squaredNorm()) * Vec3(0.6, 0.8, 0.3);
     CHECK((moved({0, 0, 1, 0}, p) - pulled).norm() < 1e-14);
     const Vec3 rotated = Eigen::AngleAxisd(0.7, Vec3(1, 1, 0.5).normalized()) * p;

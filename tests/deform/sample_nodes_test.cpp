@@ -9,7 +9,8 @@ using namespace cinch;
 TEST_CASE("nodes are farthest-point samples inside the volume, repeatable, and cover it")
 {
     const TriangleMesh sphere = ring_sphere(2000);
-    const SimulationNodes nodes = sample_nodes(sphere, 100, 0), again = sample_nodes(sphere, 100, 0), other = sample_nodes(sphere, 100, 1);
+    const SimulationNodes nodes = sample_nodes(sphere, 100, 0), again = sample_nodes(sphere, 100, 0),
+                          other = sample_nodes(sphere, 100, 1);
     REQUIRE(nodes.position.size() == 100);
     CHECK(nodes.position == again.position);
     CHECK(nodes.position != other.position);
@@ -21,8 +22,8 @@ TEST_CASE("nodes are farthest-point samples inside the volume, repeatable, and c
         for (std::size_t j = 0; j < i; ++j)
             closest = std::min(closest, (nodes.position[i] - nodes.position[j]).norm());
     }
-    CHECK(inner >= 10);                          // the volume, not only the surface
-    CHECK(closest >= nodes.fill_distance);       // greedy: every node was at least as far from the others as any point is now
+    CHECK(inner >= 10);                    // the volume, not only the surface
+    CHECK(closest >= nodes.fill_distance); // greedy: every node was at least as far from the others as any point is now
     for (const Vec3& v : sphere.vertices) {
         double nearest = 2;
         for (const Vec3& p : nodes.position)
@@ -45,7 +46,8 @@ TEST_CASE("kernel weights: every vertex is reached, weights fall with distance")
         const auto row = weights.of(k);
         for (std::size_t i = 0; i < row.node.size(); ++i)
             for (std::size_t j = 0; j < i; ++j)
-                if ((nodes.position[row.node[i]] - sphere.vertices[k]).norm() < (nodes.position[row.node[j]] - sphere.vertices[k]).norm())
+                if ((nodes.position[row.node[i]] - sphere.vertices[k]).norm() <
+                    (nodes.position[row.node[j]] - sphere.vertices[k]).norm())
                     REQUIRE(row.weight[i] >= row.weight[j]);
     }
     const Weights lonely = kernel_weights(sphere, nodes, 0.01, &alone);

@@ -6,14 +6,16 @@
 #include <limits>
 #include <type_traits>
 
-#include "tests/support.hpp"
 #include "cinch/deform.hpp"
+#include "tests/support.hpp"
 #include "toolkit/deform/kernel/targets.hpp"
 
 using namespace cinch;
 
-static_assert(std::is_constructible_v<SurfaceEvaluator<double>, DeformableSurface&> && std::is_constructible_v<SurfaceEvaluator<float>, const DeformableSurface&>);
-static_assert(!std::is_constructible_v<SurfaceEvaluator<double>, DeformableSurface> && !std::is_constructible_v<SurfaceEvaluator<float>, const DeformableSurface>,
+static_assert(std::is_constructible_v<SurfaceEvaluator<double>, DeformableSurface&> &&
+              std::is_constructible_v<SurfaceEvaluator<float>, const DeformableSurface&>);
+static_assert(!std::is_constructible_v<SurfaceEvaluator<double>, DeformableSurface> &&
+                  !std::is_constructible_v<SurfaceEvaluator<float>, const DeformableSurface>,
               "a temporary would be gone at the first call");
 
 TEST_CASE("SIMD evaluation in double has the bits of the scalar one, on every target")

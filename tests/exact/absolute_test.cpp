@@ -4,9 +4,9 @@
 #include <limits>
 #include <random>
 
+#include "cinch/bounds.hpp"
 #include "exact/absolute.hpp"
 #include "exact/number.hpp"
-#include "cinch/bounds.hpp"
 
 using namespace cinch;
 using exact::Exact;
@@ -28,7 +28,8 @@ TEST_CASE("absolute supports are at most the relative ones about their origin, e
                 for (std::size_t d = 0; d < supports.size(); ++d) {
                     Exact sum(static_cast<double>(relative[d]));
                     for (int r = 0; r < 3; ++r) {
-                        const Exact along = Exact(static_cast<double>(axes_of(k)[d / 2][static_cast<std::size_t>(r)])) * Exact(origin[r]);
+                        const Exact along = Exact(static_cast<double>(axes_of(k)[d / 2][static_cast<std::size_t>(r)])) *
+                                            Exact(origin[r]);
                         sum = d % 2 ? sum - along : sum + along;
                     }
                     REQUIRE(Exact(supports[d]) <= sum);

@@ -4,11 +4,11 @@
 
 #include <catch2/catch.hpp>
 
+#include "cinch/deform.hpp"
 #include "exact/formulas.hpp"
 #include "exact/optimum.hpp"
 #include "toolkit/bounds/bound_vertex.hpp"
 #include "toolkit/deform/dyadic.hpp"
-#include "cinch/deform.hpp"
 
 using namespace cinch;
 using namespace cinch::exact;
@@ -25,7 +25,17 @@ struct Case {
     Vec3 centre, half;
 };
 
-enum Family { generic, large_translation, subnormal, coincident, near_singular, reflected, single_node, huge, family_count };
+enum Family {
+    generic,
+    large_translation,
+    subnormal,
+    coincident,
+    near_singular,
+    reflected,
+    single_node,
+    huge,
+    family_count
+};
 
 Case draw(Family family, std::mt19937_64& random)
 {
@@ -78,7 +88,8 @@ Case draw(Family family, std::mt19937_64& random)
     c.centre = 0.5 * low + 0.5 * high;
     for (int a = 0; a < 3; ++a) { // as tight as a double can be: exact containment, no slack beyond one step
         c.half[a] = std::max(high[a] - c.centre[a], c.centre[a] - low[a]);
-        while (Exact(c.half[a]) < Exact(high[a]) - Exact(c.centre[a]) || Exact(c.half[a]) < Exact(c.centre[a]) - Exact(low[a]))
+        while (Exact(c.half[a]) < Exact(high[a]) - Exact(c.centre[a]) ||
+               Exact(c.half[a]) < Exact(c.centre[a]) - Exact(low[a]))
             c.half[a] = std::nextafter(c.half[a], 1.0);
     }
     return c;
@@ -94,7 +105,17 @@ Count below_exact(const Case& c, Method method, Rounding rounding)
     Count count;
     BoundScratch scratch;
     std::vector<double> supports(26);
-    bound_box({{c.centre, c.half}, c.node, {c.l, c.h}, {}, {}, Vec3::Zero(), {}, {}, 0, static_cast<std::uint32_t>(c.node.size())}, c.maps, method, rounding, axes_of(26), scratch, supports);
+    bound_box({{c.centre, c.half},
+               c.node,
+               {c.l, c.h},
+               {},
+               {},
+               Vec3::Zero(),
+               {},
+               {},
+               0,
+               static_cast<std::uint32_t>(c.node.size())},
+              c.maps, method, rounding, axes_of(26), scratch, supports);
     for (std::size_t d = 0; d < 26; ++d) {
         if (std::isinf(supports[d])) {
             ++count.checked;
@@ -155,7 +176,8 @@ TEST_CASE("finite cases get finite bounds")
     for (Family family : {generic, large_translation, subnormal, near_singular, huge})
         for (int trial = 0; trial < 50; ++trial) {
             const Case c = draw(family, random);
-            bound_box({{c.centre, c.half}, c.node, {c.l, c.h}, {}, {}, Vec3::Zero(), {}, {}, 0, 8}, c.maps, Method::limited, Rounding::proven, axes_of(26), scratch, supports);
+            bound_box({{c.centre, c.half}, c.node, {c.l, c.h}, {}, {}, Vec3::Zero(), {}, {}, 0, 8}, c.maps,
+                      Method::limited, Rounding::proven, axes_of(26), scratch, supports);
             for (double s : supports)
                 REQUIRE(std::isfinite(s));
         }
@@ -168,7 +190,17 @@ TEST_CASE("translations of 1e8 on an extent of 1e-3 inflate the bound by about 1
     std::vector<double> supports(6);
     for (int trial = 0; trial < 50; ++trial) {
         const Case c = draw(large_translation, random);
-        bound_box({{c.centre, c.half}, c.node, {c.l, c.h}, {}, {}, Vec3::Zero(), {}, {}, 0, static_cast<std::uint32_t>(c.node.size())}, c.maps, Method::limited, Rounding::proven, axes_of(6), scratch, supports);
+        bound_box({{c.centre, c.half},
+                   c.node,
+                   {c.l, c.h},
+                   {},
+                   {},
+                   Vec3::Zero(),
+                   {},
+                   {},
+                   0,
+                   static_cast<std::uint32_t>(c.node.size())},
+                  c.maps, Method::limited, Rounding::proven, axes_of(6), scratch, supports);
         for (std::size_t d = 0; d < 6; ++d) {
             std::vector<Exact> b;
             for (const AffineMap& map : c.maps) {

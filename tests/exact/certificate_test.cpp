@@ -3,10 +3,10 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "cinch/refit.hpp"
 #include "exact/certificate.hpp"
 #include "exact/sha256.hpp"
 #include "tests/support.hpp"
-#include "cinch/refit.hpp"
 
 using namespace cinch;
 using namespace cinch::exact;

@@ -33,12 +33,24 @@ Space draw(int family, std::size_t n, std::mt19937_64& random)
         double a = uniform(), b = uniform();
         const double mean = 1 / static_cast<double>(n);
         switch (family) {
-        case generic: a *= mean; break;
-        case coarse: a = static_cast<double>(random() % 3) / 16, b = static_cast<double>(random() % 9) / 8; break;
-        case fixed: a = random() % 2 ? b = 0.125 : 0; break;
-        case narrow: a = mean * (0.9 + 0.1 * a), b = mean * (1 + 0.1 * b); break;
-        case tiny: a = std::ldexp(a, -1070), b = random() % 2 ? 1 : std::ldexp(b, -1060); break;
-        case far_apart: a = std::ldexp(a, -80), b = std::ldexp(b, -static_cast<int>(random() % 3)); break;
+        case generic:
+            a *= mean;
+            break;
+        case coarse:
+            a = static_cast<double>(random() % 3) / 16, b = static_cast<double>(random() % 9) / 8;
+            break;
+        case fixed:
+            a = random() % 2 ? b = 0.125 : 0;
+            break;
+        case narrow:
+            a = mean * (0.9 + 0.1 * a), b = mean * (1 + 0.1 * b);
+            break;
+        case tiny:
+            a = std::ldexp(a, -1070), b = random() % 2 ? 1 : std::ldexp(b, -1060);
+            break;
+        case far_apart:
+            a = std::ldexp(a, -80), b = std::ldexp(b, -static_cast<int>(random() % 3));
+            break;
         }
         s.l.push_back(std::min({a, b, 1.0}));
         s.h.push_back(std::min(1.0, std::max(a, b)));
@@ -104,13 +116,16 @@ TEST_CASE("counts equal the listing for n up to 18")
     for (int family = 0; family < family_count; ++family)
         for (std::size_t n : {10u, 14u, 18u}) {
             const Space s = draw(family, n, random);
-            CHECK(count_corners(s.view()).count == std::to_string(visit_corners(s.view(), [](const auto&, const auto&) { return true; })));
+            CHECK(count_corners(s.view()).count ==
+                  std::to_string(visit_corners(s.view(), [](const auto&, const auto&) { return true; })));
         }
 }
 
 TEST_CASE("hypersimplices have binomially many corners, and large ones are counted on their grid")
 {
-    auto hypersimplex = [](std::size_t n, double h) { return Space{std::vector<double>(n, 0), std::vector<double>(n, h)}; };
+    auto hypersimplex = [](std::size_t n, double h) {
+        return Space{std::vector<double>(n, 0), std::vector<double>(n, h)};
+    };
     CHECK(count_corners(hypersimplex(8, 0.25).view()).count == "70");
     CHECK(visit_corners(hypersimplex(16, 0.125).view(), [](const auto&, const auto&) { return true; }) == 12870);
     CHECK(count_corners(hypersimplex(64, 0.5).view()).count == "2016");
@@ -145,8 +160,8 @@ TEST_CASE("corner sets equal those of lrs on 200 random cases")
         const Space s = draw(trial % 4, n, random);
         if (!is_feasible(s.view()))
             continue; // lrs prints no vertices then, as do we
-        std::string input = "case\nH-representation\nlinearity 1 " + std::to_string(2 * n + 1) + "\nbegin\n" + std::to_string(2 * n + 1) + " " +
-                            std::to_string(n + 1) + " rational\n";
+        std::string input = "case\nH-representation\nlinearity 1 " + std::to_string(2 * n + 1) + "\nbegin\n" +
+                            std::to_string(2 * n + 1) + " " + std::to_string(n + 1) + " rational\n";
         auto row = [&](const std::string& constant, std::size_t j, const char* sign) {
             input += constant;
             for (std::size_t i = 0; i < n; ++i)

@@ -4,10 +4,10 @@
 #include <catch2/catch.hpp>
 #include <gmpxx.h>
 
+#include "cinch/refit.hpp"
 #include "exact/explain.hpp"
 #include "exact/verifier.hpp"
 #include "tests/support.hpp"
-#include "cinch/refit.hpp"
 
 using namespace cinch;
 using namespace cinch::exact;
@@ -36,7 +36,8 @@ TEST_CASE("exact losses are not negative, sum to the total exactly, and are what
         for (std::size_t bv : {std::size_t{0}, std::size_t{5}, scene.bvh.bvs.size() - 1}) {
             double mean[4] = {0, 0, 0, 0};
             for (int d = 0; d < 6; ++d) {
-                const ExactLoss loss = exact_loss({scene.e.surface, scene.bvh, scene.e.frames[2], method, 6, bv, d, s[6 * bv + static_cast<std::size_t>(d)]});
+                const ExactLoss loss = exact_loss({scene.e.surface, scene.bvh, scene.e.frames[2], method, 6, bv, d,
+                                                   s[6 * bv + static_cast<std::size_t>(d)]});
                 mpq_class sum = 0;
                 int i = 0;
                 for (const std::string* part : {&loss.box, &loss.interval, &loss.corner, &loss.rounding}) {
@@ -61,7 +62,8 @@ TEST_CASE("a VIPR file derives its bound: the combination gives the objective an
     const auto s = scene.supports(Method::eq12, 14);
     for (int d = 0; d < 14; ++d) {
         const std::size_t bv = 2;
-        std::istringstream in(vipr({scene.e.surface, scene.bvh, scene.e.frames[2], Method::eq12, 14, bv, d, s[14 * bv + static_cast<std::size_t>(d)]}));
+        std::istringstream in(vipr({scene.e.surface, scene.bvh, scene.e.frames[2], Method::eq12, 14, bv, d,
+                                    s[14 * bv + static_cast<std::size_t>(d)]}));
         auto read = [&] {
             std::string word;
             in >> word;

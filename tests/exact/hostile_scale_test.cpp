@@ -4,9 +4,9 @@
 
 #include <catch2/catch.hpp>
 
+#include "cinch/refit.hpp"
 #include "exact/verifier.hpp"
 #include "toolkit/bounds/rounding.hpp"
-#include "cinch/refit.hpp"
 
 using namespace cinch;
 
@@ -55,14 +55,17 @@ std::size_t prove(const DeformableSurface& surface, const std::vector<AffineMap>
 AffineMap turned(double scale)
 {
     const double c = std::cos(0.7), s = std::sin(0.7);
-    return {{{scale * c, -scale * s, 0, 0}, {scale * s * c, scale * c * c, -scale * s, 0}, {scale * s * s, scale * c * s, scale * c, 0}}};
+    return {{{scale * c, -scale * s, 0, 0},
+             {scale * s * c, scale * c * c, -scale * s, 0},
+             {scale * s * s, scale * c * s, scale * c, 0}}};
 }
 
 std::vector<Vec3> ball(std::size_t count, double radius)
 {
     std::vector<Vec3> points;
     for (std::size_t i = 0; i < count; ++i) { // a spiral of points all over the sphere
-        const double z = 1 - (2 * static_cast<double>(i) + 1) / static_cast<double>(count), r = std::sqrt(1 - z * z), phi = 2.399963 * static_cast<double>(i);
+        const double z = 1 - (2 * static_cast<double>(i) + 1) / static_cast<double>(count), r = std::sqrt(1 - z * z),
+                     phi = 2.399963 * static_cast<double>(i);
         points.emplace_back(radius * r * std::cos(phi), radius * r * std::sin(phi), radius * z);
     }
     return points;
@@ -100,7 +103,8 @@ TEST_CASE("rest data too large for float are not hidden by a map that drops them
     for (AffineMap& map : maps)
         map.m[1][1] = 0;
     maps[1].m[0][3] = 1000;
-    prove(surface_of({{-1, 0, -1}, {1, 0, 1}, {0.5, 1e39, 0}, {-0.5, -1e39, 0}}, {{1, 0}, {1, 0}, {0, 1}, {0, 1}}), maps);
+    prove(surface_of({{-1, 0, -1}, {1, 0, 1}, {0.5, 1e39, 0}, {-0.5, -1e39, 0}}, {{1, 0}, {1, 0}, {0, 1}, {0, 1}}),
+          maps);
 }
 
 TEST_CASE("norms do not vanish with the transforms or the surface")
@@ -145,7 +149,8 @@ TEST_CASE("flat surfaces in any plane have finite bounds")
         for (int i = 0; i < 121; ++i) {
             const double x = -1 + i % 11 / 5.0, y = -1 + i / 11 / 5.0;
             flat.emplace_back(x, y, z);
-            weights.push_back({(1 + x) * (1 + y) / 4 + 1e-3, (1 - x) * (1 + y) / 4 + 1e-3, (1 + x) * (1 - y) / 4 + 1e-3, (1 - x) * (1 - y) / 4 + 1e-3});
+            weights.push_back({(1 + x) * (1 + y) / 4 + 1e-3, (1 - x) * (1 + y) / 4 + 1e-3, (1 + x) * (1 - y) / 4 + 1e-3,
+                               (1 - x) * (1 - y) / 4 + 1e-3});
         }
         std::vector<AffineMap> maps(4, identity_map);
         for (std::size_t j = 0; j < 4; ++j)

@@ -3,10 +3,10 @@
 
 #include <catch2/catch.hpp>
 
+#include "cinch/bvh.hpp"
 #include "exact/formulas.hpp"
 #include "exact/optimum.hpp"
 #include "tests/support.hpp"
-#include "cinch/bvh.hpp"
 
 using namespace cinch;
 using namespace cinch::exact;
@@ -31,7 +31,8 @@ TEST_CASE("the order of the ladder on exact values: local <= limited <= eq12 <= 
                     }
                     std::vector<Exact> sorted = common;
                     std::sort(sorted.begin(), sorted.end(), [](const Exact& x, const Exact& y) { return y < x; });
-                    const Exact limited = optimum(rest.space, common)->value, over_local = optimum(rest.space, local)->value;
+                    const Exact limited = optimum(rest.space, common)->value,
+                                over_local = optimum(rest.space, local)->value;
                     const Exact eq12 = sorted.size() > 1 ? dual_value(rest.space, common, sorted[1]) : sorted[0];
                     REQUIRE(over_local <= limited);
                     REQUIRE(limited <= eq12);

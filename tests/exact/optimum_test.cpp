@@ -11,7 +11,8 @@ using namespace cinch::exact;
 
 namespace {
 
-// The greatest value over all corners of W', found by trying every choice of one free coordinate and l or h for the others.
+// The greatest value over all corners of W', found by trying every choice of one free coordinate and l or h for the
+// others.
 std::optional<Exact> best_corner(WeightSpace space, const std::vector<Exact>& b)
 {
     const std::size_t n = b.size();

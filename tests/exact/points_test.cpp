@@ -4,9 +4,9 @@
 #include <CGAL/QP_functions.h>
 #include <CGAL/QP_models.h>
 
+#include "cinch/bvh.hpp"
 #include "exact/number.hpp"
 #include "tests/support.hpp"
-#include "cinch/bvh.hpp"
 
 using namespace cinch;
 using cinch::exact::Exact;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <catch2/catch.hpp>
 
+#include "cinch/refit.hpp"
 #include "exact/polytope.hpp"
 #include "tests/support.hpp"
-#include "cinch/refit.hpp"
 
 using namespace cinch;
 using namespace cinch::exact;
@@ -45,7 +45,8 @@ TEST_CASE("bounds hold the true k-DOP: volumes are ordered, and fall with k")
         for (int k : {6, 14, 26}) {
             std::vector<double> s(bvh.bvs.size() * static_cast<std::size_t>(k));
             refit(bvh, e.surface, e.frames[2], {Method::limited, k}, s);
-            const Polytope bound = polytope(k, std::span(s).subspan(bv * static_cast<std::size_t>(k), static_cast<std::size_t>(k)));
+            const Polytope bound =
+                polytope(k, std::span(s).subspan(bv * static_cast<std::size_t>(k), static_cast<std::size_t>(k)));
             const Polytope truth = true_polytope(e.surface, bvh, bv, e.frames[2], k);
             CHECK(truth.approximate_volume > 0);
             CHECK(bound.approximate_volume > truth.approximate_volume);

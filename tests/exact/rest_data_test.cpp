@@ -6,16 +6,16 @@
 #include <limits>
 #include <random>
 
-#include <Eigen/Geometry>
 #include <CGAL/QP_functions.h>
 #include <CGAL/QP_models.h>
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
+#include "cinch/refit.hpp"
+#include "cinch/surface.hpp"
 #include "exact/oriented_check.hpp"
 #include "exact/verifier.hpp"
 #include "tests/support.hpp"
-#include "cinch/surface.hpp"
-#include "cinch/refit.hpp"
 
 using namespace cinch;
 using namespace cinch::exact;
@@ -24,7 +24,10 @@ namespace {
 
 using Random = std::mt19937_64;
 
-int whole(Random& random, int low, int high) { return low + static_cast<int>(random() % static_cast<std::uint64_t>(high - low + 1)); }
+int whole(Random& random, int low, int high)
+{
+    return low + static_cast<int>(random() % static_cast<std::uint64_t>(high - low + 1));
+}
 
 // One of the 48 maps that exchange and reflect the coordinates.
 Vec3 turned(const Vec3& x, int which)
@@ -43,8 +46,9 @@ void add_box(TriangleMesh& mesh, const Vec3& low, const Vec3& size)
     const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
     for (int i = 0; i < 8; ++i)
         mesh.vertices.push_back(low + Vec3(i & 1 ? size[0] : 0, i & 2 ? size[1] : 0, i & 4 ? size[2] : 0));
-    for (const auto& t : {Triangle{0, 2, 1}, Triangle{1, 2, 3}, Triangle{4, 5, 6}, Triangle{5, 7, 6}, Triangle{0, 1, 4}, Triangle{1, 5, 4}, Triangle{2, 6, 3},
-                          Triangle{3, 6, 7}, Triangle{0, 4, 2}, Triangle{2, 4, 6}, Triangle{1, 3, 5}, Triangle{3, 7, 5}})
+    for (const auto& t : {Triangle{0, 2, 1}, Triangle{1, 2, 3}, Triangle{4, 5, 6}, Triangle{5, 7, 6}, Triangle{0, 1, 4},
+                          Triangle{1, 5, 4}, Triangle{2, 6, 3}, Triangle{3, 6, 7}, Triangle{0, 4, 2}, Triangle{2, 4, 6},
+                          Triangle{1, 3, 5}, Triangle{3, 7, 5}})
         mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
 }
 
@@ -52,7 +56,8 @@ void add_box(TriangleMesh& mesh, const Vec3& low, const Vec3& size)
 TriangleMesh stack(Random& random)
 {
     TriangleMesh mesh;
-    const int flat = whole(random, 0, 5), turn = whole(random, 0, 47); // of the whole stack: one of three coordinates, or none
+    const int flat = whole(random, 0, 5),
+              turn = whole(random, 0, 47); // of the whole stack: one of three coordinates, or none
     for (int boxes = whole(random, 1, 6); boxes > 0; --boxes) {
         Vec3 low, size;
         for (int s = 0; s < 3; ++s) {
@@ -134,7 +139,8 @@ TEST_CASE("rest data of boxes parallel to the axes, flat, exchanged, reflected, 
                     std::vector<double> supports(bvh.bvs.size() * static_cast<std::size_t>(k));
                     refit(bvh, surface, maps, {method, k, Rounding::proven, Precision::float32, 1, shape}, supports);
                     const FrameVerdict verdict = verifier.check(maps, method, k, supports, shape);
-                    REQUIRE(std::count(verdict.failed.begin(), verdict.failed.end(), 0) == static_cast<std::ptrdiff_t>(verdict.failed.size()));
+                    REQUIRE(std::count(verdict.failed.begin(), verdict.failed.end(), 0) ==
+                            static_cast<std::ptrdiff_t>(verdict.failed.size()));
                 }
         }
     }

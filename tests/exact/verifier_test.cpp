@@ -11,12 +11,12 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
-#include "exact/verifier.hpp"
-#include "tests/support.hpp"
 #include "cinch/bounds.hpp"
-#include "toolkit/deform/dyadic.hpp"
 #include "cinch/deform.hpp"
 #include "cinch/refit.hpp"
+#include "exact/verifier.hpp"
+#include "tests/support.hpp"
+#include "toolkit/deform/dyadic.hpp"
 
 #if defined(__SSE2__)
 #include <xmmintrin.h>
@@ -52,7 +52,8 @@ struct Scene {
 
 std::size_t violated(const FrameVerdict& verdict, std::uint8_t statements = 0xff)
 {
-    return static_cast<std::size_t>(std::count_if(verdict.failed.begin(), verdict.failed.end(), [&](auto mask) { return (mask & statements) != 0; }));
+    return static_cast<std::size_t>(std::count_if(verdict.failed.begin(), verdict.failed.end(),
+                                                  [&](auto mask) { return (mask & statements) != 0; }));
 }
 
 } // namespace
@@ -73,7 +74,8 @@ TEST_CASE("every method is proven for every k and frame, and the losses add up")
                 const FrameVerdict verdict = verifier.check(scene.e.frames[frame], method, k, s);
                 REQUIRE(violated(verdict) == 0);
                 REQUIRE(verdict.examples.empty());
-                CHECK(static_cast<double>(verdict.decided_by_filter) > 0.95 * static_cast<double>(verdict.failed.size()));
+                CHECK(static_cast<double>(verdict.decided_by_filter) >
+                      0.95 * static_cast<double>(verdict.failed.size()));
                 for (std::size_t i = 0; i < verdict.bvs.size(); ++i) {
                     const BvReport& bv = verdict.bvs[i];
                     REQUIRE(bv.bound_radius >= bv.true_radius - 1e-15);
@@ -82,14 +84,16 @@ TEST_CASE("every method is proven for every k and frame, and the losses add up")
                     REQUIRE((bv.loss.corner >= -1e-13 || !method.within(weight_space_methods)));
                     if (k != 6)
                         continue;
-                    // Mean over directions of bound − truth; the widths of truth are those of the `vertices` bound, up to rounding.
+                    // Mean over directions of bound − truth; the widths of truth are those of the `vertices` bound, up
+                    // to rounding.
                     double width = 0;
                     for (std::size_t d = 6 * i; d < 6 * i + 6; ++d)
                         width += s[d] / 6;
                     const auto truth = scene.supports(Method::vertices, 6, frame, Rounding::plain);
                     for (std::size_t d = 6 * i; d < 6 * i + 6; ++d)
                         width -= truth[d] / 6;
-                    REQUIRE(bv.loss.box + bv.loss.interval + bv.loss.corner + bv.loss.rounding == Approx(width).margin(1e-13));
+                    REQUIRE(bv.loss.box + bv.loss.interval + bv.loss.corner + bv.loss.rounding ==
+                            Approx(width).margin(1e-13));
                     if (i > 20)
                         break; // the truth above is refitted each time
                 }
@@ -104,7 +108,8 @@ TEST_CASE("oriented rest boxes are proven")
         for (Precision precision : {Precision::float32, Precision::float64})
             for (int k : kdops) {
                 std::vector<double> s(scene.bvh.bvs.size() * static_cast<std::size_t>(k));
-                refit(scene.bvh, scene.e.surface, scene.e.frames[2], {method, k, Rounding::proven, precision, 1, RestShape::obb}, s);
+                refit(scene.bvh, scene.e.surface, scene.e.frames[2],
+                      {method, k, Rounding::proven, precision, 1, RestShape::obb}, s);
                 CHECK(violated(verifier.check(scene.e.frames[2], method, k, s, RestShape::obb)) == 0);
                 CHECK(s != scene.supports(method, k, 2, Rounding::proven, precision));
             }
@@ -132,7 +137,8 @@ TEST_CASE("mutation: without the rounding terms bounds are violated")
         REQUIRE_FALSE(verdict.examples.empty());
         CHECK_THAT(verdict.examples[0].detail, Catch::Contains("exceeds the bound by ") && Catch::Contains("/"));
     }
-    CHECK(violated(scene.verdict(Method::vertices, 6, scene.supports(Method::vertices, 6, 2, Rounding::plain)), exact_vertices) > 100);
+    CHECK(violated(scene.verdict(Method::vertices, 6, scene.supports(Method::vertices, 6, 2, Rounding::plain)),
+                   exact_vertices) > 100);
 }
 
 TEST_CASE("mutation: l and h swapped for one simulation node of one BV")
@@ -196,7 +202,8 @@ TEST_CASE("mutation: a rest box too small")
 {
     Scene scene;
     Bv& bv = scene.bvh.bvs[1];
-    bv.box.half.y() *= 1 - 1e-13; // the stored half is a few units in the last place of the coordinates above the tightest
+    bv.box.half.y() *=
+        1 - 1e-13; // the stored half is a few units in the last place of the coordinates above the tightest
     CHECK(violated(scene.verdict(Method::limited, 6, scene.supports(Method::limited, 6)), rest_data) == 6);
 }
 
@@ -241,7 +248,8 @@ TEST_CASE("mutation: a bound just below the truth, per statement")
     s[6 * 2 + 1] = std::numeric_limits<double>::quiet_NaN();
     CHECK(scene.verdict(Method::limited, 6, s).failed[6 * 2 + 1] != 0);
     s[6 * 2 + 1] = -std::numeric_limits<double>::infinity();
-    CHECK(scene.verdict(Method::limited, 6, s).failed[6 * 2 + 1] == (weight_space | exact_vertices | computed_vertices));
+    CHECK(scene.verdict(Method::limited, 6, s).failed[6 * 2 + 1] ==
+          (weight_space | exact_vertices | computed_vertices));
     s[6 * 2 + 1] = std::numeric_limits<double>::infinity();
     CHECK(violated(scene.verdict(Method::limited, 6, s)) == 0);
 }
@@ -312,7 +320,8 @@ TEST_CASE("what overflows is bounded by infinity and nothing less")
             auto s = scene.supports(method, k);
             CHECK(std::count(s.begin(), s.end(), std::numeric_limits<double>::infinity()) > 0);
             CHECK(violated(scene.verdict(method, k, s)) == 0);
-            std::replace(s.begin(), s.end(), std::numeric_limits<double>::infinity(), std::numeric_limits<double>::max());
+            std::replace(s.begin(), s.end(), std::numeric_limits<double>::infinity(),
+                         std::numeric_limits<double>::max());
             CHECK(violated(scene.verdict(method, k, s)) > 0);
         }
 }
@@ -336,7 +345,8 @@ TEST_CASE("a floating-point environment that TBB took over earlier does not reac
     std::vector<Vec3> computed(scene.e.surface.mesh.vertices.size());
     evaluate(scene.e.surface.mesh.vertices, scene.e.surface.weights, scene.e.frames[2], computed);
     for (std::size_t k = 0; k < computed.size(); ++k)
-        REQUIRE(computed[k] == evaluate_vertex(scene.e.surface.mesh.vertices[k], scene.e.surface.weights.of(k), scene.e.frames[2]));
+        REQUIRE(computed[k] ==
+                evaluate_vertex(scene.e.surface.mesh.vertices[k], scene.e.surface.weights.of(k), scene.e.frames[2]));
     CHECK(computed[0] != Vec3(0, 0, 0));
     for (Methods method : methods)
         CHECK(violated(scene.verdict(method, 6, scene.supports(method, 6))) == 0);

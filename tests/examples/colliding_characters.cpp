@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two characters that play the same clip side by side: which of their triangles intersect, and when. colliding_characters FILE.glb DISTANCE
+// Two characters that play the same clip side by side: which of their triangles intersect, and when.
+// colliding_characters FILE.glb DISTANCE
 #include <cinch/collider.hpp>
 #include <cinch/io.hpp>
 #include <cstdlib>
@@ -24,7 +25,8 @@ try {
         const cinch::BodyFrame frames[] = {{here}, {beside}};
         collider.update(frames);
         const std::vector<cinch::TrianglePair> pairs = collider.pairs(); // exact, and always in the same order
-        std::cout << clip.time_s(f) << " s: " << pairs.size() << " pairs of bodies " << left << " and " << right << '\n';
+        std::cout << clip.time_s(f) << " s: " << pairs.size() << " pairs of bodies " << left << " and " << right
+                  << '\n';
     }
 } catch (const cinch::InputError& error) {
     std::cerr << error.what() << '\n';

@@ -29,7 +29,8 @@ try {
         "name": "jelly", "duration": 0.5,
         "bodies": [{"name": "box", "surface": "box", "box": [1, 1, 1], "lattice": [4, 4, 4]}],
         "effects": [{"effect": "elastic", "young": 1e4}]
-    })", "jelly", ".");
+    })",
+                                 "jelly", ".");
     scene.add(0, std::make_unique<Wind>(cinch::Vec3(2, 0, 0)));
     while (scene.frame() + 1 < scene.frame_count())
         scene.advance();

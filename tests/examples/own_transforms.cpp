@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A surface, weights and transforms of one's own: a flag of two simulation nodes, the right one swinging up, in an 18-DOP.
+// A surface, weights and transforms of one's own: a flag of two simulation nodes, the right one swinging up, in an
+// 18-DOP.
 #include <cinch/deform.hpp>
 #include <cinch/refit.hpp>
 #include <iostream>

@@ -17,7 +17,8 @@ try {
         scene.advance();
         refit(scene.transforms(0), supports);
         const cinch::Aabb box = cinch::Dop(std::span(supports).first(6)).aabb();
-        std::cout << scene.time_s() << " s, " << scene.name(0) << ": z from " << box.lower[2] << " to " << box.upper[2] << " m\n";
+        std::cout << scene.time_s() << " s, " << scene.name(0) << ": z from " << box.lower[2] << " to " << box.upper[2]
+                  << " m\n";
     }
 } catch (const std::exception& error) {
     std::cerr << error.what() << '\n';

@@ -64,6 +64,8 @@ TEST_CASE("bad input exits 2 with one line: file, place, reason")
     folder.write("ok.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
     folder.write("w.txt", "4 1\n1 0 1\n");
     check_refused("verify " + at + "ok.off --weights " + at + "w.txt", "go together");
-    check_refused("verify " + at + "ok.off --weights " + at + "w.txt --transforms " + at + "t.txt", "declares 4 vertices, but the mesh has 3");
-    check_refused("verify " + at + "ok.off --nodes 5 --weights " + at + "w.txt --transforms " + at + "t.txt", "--nodes needs");
+    check_refused("verify " + at + "ok.off --weights " + at + "w.txt --transforms " + at + "t.txt",
+                  "declares 4 vertices, but the mesh has 3");
+    check_refused("verify " + at + "ok.off --nodes 5 --weights " + at + "w.txt --transforms " + at + "t.txt",
+                  "--nodes needs");
 }

@@ -50,7 +50,8 @@ TEST_CASE("every reference case is answered as its file says")
 TEST_CASE("every hostile case has one of its expected outcomes, within a second or so")
 {
     int cases = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(CINCH_DATA) / "cases" / "hostile")) {
+    for (const auto& entry :
+         std::filesystem::directory_iterator(std::filesystem::path(CINCH_DATA) / "cases" / "hostile")) {
         const json wanted = parsed(entry.path())["expected"];
         const test::Run run = test::cinch("corners '" + entry.path().string() + "' --json");
         std::vector<std::string> outcomes;
@@ -78,7 +79,8 @@ TEST_CASE("corners are listed as fractions, up to a limit")
     const std::string file = folder.write("a.json", R"({"n":3,"l":[0,0,0],"h":["0x1p-1",0.5,0.75],"b":[]})").string();
     const test::Run run = test::cinch("corners " + file + " --list");
     CHECK(run.status == 0);
-    CHECK_THAT(run.out, Catch::Contains("feasible, 5 corners\n") && Catch::Contains("0/1 1/4 3/4\n") && Catch::Contains("1/2 1/2 0/1\n"));
+    CHECK_THAT(run.out, Catch::Contains("feasible, 5 corners\n") && Catch::Contains("0/1 1/4 3/4\n") &&
+                            Catch::Contains("1/2 1/2 0/1\n"));
     CHECK(run.lines().size() == 6);
     CHECK(test::cinch("corners " + file + " --list --limit 2").lines().size() == 3);
     for (const std::string& line : test::cinch("corners " + file + " --list --json").lines())

@@ -47,7 +47,8 @@ TEST_CASE("a case whose file was changed is refused by the name of the field")
     auto refused = [&](const char* field, const std::string& value) {
         json changed = json::parse(good);
         changed[field] = json::parse(value);
-        CHECK_THROWS_WITH(fuzz_case_from_json(changed.dump(), "a"), Catch::StartsWith("a: field " + std::string(field)));
+        CHECK_THROWS_WITH(fuzz_case_from_json(changed.dump(), "a"),
+                          Catch::StartsWith("a: field " + std::string(field)));
     };
     for (const char* field : {"n", "kdop", "trial", "passes"})
         for (const char* odd : {"-1", "1e30", "6.5", "null", "\"6\"", "18446744073709551615"})
@@ -112,8 +113,11 @@ TEST_CASE("shards partition the cases, and threads change nothing")
         return all;
     };
     CHECK(failures("--cases 2100 --threads 1") == failures("--cases 2100 --threads 2"));
-    auto violations = [&](const std::string& options) { return summary(test::cinch("fuzz --json --sabotage no-rounding " + options))["violations"].get<int>(); };
-    CHECK(violations("--cases 2100") == violations("--cases 700 --shard 0/3") + violations("--cases 700 --shard 1/3") + violations("--cases 700 --shard 2/3"));
+    auto violations = [&](const std::string& options) {
+        return summary(test::cinch("fuzz --json --sabotage no-rounding " + options))["violations"].get<int>();
+    };
+    CHECK(violations("--cases 2100") == violations("--cases 700 --shard 0/3") + violations("--cases 700 --shard 1/3") +
+                                            violations("--cases 700 --shard 2/3"));
 }
 
 TEST_CASE("a fuzz run killed at any moment continues without repeating or losing cases")
@@ -138,7 +142,8 @@ TEST_CASE("a fuzz run killed within its first second keeps what it did, whenever
 {
     const test::TemporaryFolder folder;
     const std::string state = (folder.path() / "state.json").string();
-    const std::string run = "fuzz --cases 1000000 --json --sabotage no-rounding --family generic --threads 1 --resume " + state;
+    const std::string run =
+        "fuzz --cases 1000000 --json --sabotage no-rounding --family generic --threads 1 --resume " + state;
     std::mt19937_64 draw(11);
     std::uint64_t last = 0;
     int seen = 0, progress = 0;
@@ -154,10 +159,12 @@ TEST_CASE("a fuzz run killed within its first second keeps what it did, whenever
         last = next;
         // Exactly those cases that are done, counted by a run that was not killed.
         if (i % 10 == 9) {
-            const json whole = summary(test::cinch("fuzz --json --sabotage no-rounding --family generic --cases " + std::to_string(next)));
+            const json whole = summary(
+                test::cinch("fuzz --json --sabotage no-rounding --family generic --cases " + std::to_string(next)));
             CHECK(whole["violations"] == kept["violations"]);
         }
-        const test::Run checked = test::cinch("fuzz --seconds 0 --json --sabotage no-rounding --family generic --resume " + state);
+        const test::Run checked =
+            test::cinch("fuzz --seconds 0 --json --sabotage no-rounding --family generic --resume " + state);
         CHECK(checked.status == (kept["violations"] == 0 ? 0 : 1));
         CHECK(summary(checked)["cases"] == next);
     }
@@ -190,14 +197,18 @@ TEST_CASE("a fuzz state continues only what it is of, and every field is checked
     refused(good, options + "--sabotage lower-h ", "field \"sabotage\": \"\" there, \"lower-h\" in this run");
     refused(good, "--cases 4999 --seed 3 --shard 1/2 ", "field \"next\": 5000 cases are done, more than --cases 4999");
     auto with = [&](const char* field, const std::string& value) {
-        return std::regex_replace(good, std::regex("\"" + std::string(field) + "\":(\\[\\]|[^,}]*)"), "\"" + std::string(field) + "\":" + value);
+        return std::regex_replace(good, std::regex("\"" + std::string(field) + "\":(\\[\\]|[^,}]*)"),
+                                  "\"" + std::string(field) + "\":" + value);
     };
-    for (const char* field : {"version", "commit", "seed", "family", "shard", "shards", "sabotage", "next", "violations", "seconds", "shrunk"}) {
+    for (const char* field : {"version", "commit", "seed", "family", "shard", "shards", "sabotage", "next",
+                              "violations", "seconds", "shrunk"}) {
         const std::string quoted = "field \"" + std::string(field) + "\": ";
-        for (const char* odd : {"-5", "1e30", "4096.7", "null", "\"x\"", "[1]", "{}", "true", "99999999999999999999", "18446744073709551615"})
+        for (const char* odd : {"-5", "1e30", "4096.7", "null", "\"x\"", "[1]", "{}", "true", "99999999999999999999",
+                                "18446744073709551615"})
             if (field != std::string("seconds") || odd[0] < '0' || odd[0] > '9')
                 refused(with(field, odd), options, quoted);
-        refused(std::regex_replace(good, std::regex("\"" + std::string(field) + "\""), "\"x\""), options, quoted + "is missing");
+        refused(std::regex_replace(good, std::regex("\"" + std::string(field) + "\""), "\"x\""), options,
+                quoted + "is missing");
     }
     refused(with("violations", "5001"), options, "field \"violations\": 5001 is more than 5000");
     refused(with("violations", "1"), options, "was changed");
@@ -265,5 +276,7 @@ TEST_CASE("fuzz usage errors")
     CHECK(test::cinch("fuzz --seconds nan").status == 2);
     const test::TemporaryFolder folder;
     CHECK(test::cinch("fuzz --cases 1 --resume " + folder.write("s", "{").string()).status == 2);
-    CHECK(test::cinch("fuzz --cases 1 --sabotage no-rounding --family generic --corpus " + folder.write("file", "x").string()).status == 2);
+    CHECK(test::cinch("fuzz --cases 1 --sabotage no-rounding --family generic --corpus " +
+                      folder.write("file", "x").string())
+              .status == 2);
 }

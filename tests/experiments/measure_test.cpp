@@ -8,13 +8,13 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "cinch/refit.hpp"
 #include "experiments/measure/baselines.hpp"
 #include "experiments/measure/race.hpp"
 #include "tests/support.hpp"
 #include "toolkit/bounds/bound_box.hpp"
 #include "toolkit/bounds/weight_space.hpp"
 #include "toolkit/deform/kernel/targets.hpp"
-#include "cinch/refit.hpp"
 
 using namespace cinch;
 using nlohmann::json;
@@ -103,7 +103,8 @@ TEST_CASE("cinch scaling: every method at every size, figures with their targets
         ++sizes[r["method"]];
     }
     CHECK(figures >= 8);
-    for (const char* method : {"textbook", "optimal", "convex", "sphere", "corners", "eq12", "limited", "local", "support", "linear", "best"})
+    for (const char* method : {"textbook", "optimal", "convex", "sphere", "corners", "eq12", "limited", "local",
+                               "support", "linear", "best"})
         CHECK(sizes[method] == 9);
 }
 
@@ -111,7 +112,9 @@ TEST_CASE("cinch tightness: ratios, attribution that adds up, CSV and charts")
 {
     const test::TemporaryFolder folder;
     const std::string chart = (folder.path() / "t.svg").string();
-    const test::Run run = test::cinch("tightness santa --nodes 60 --frames 2 --leaf 32 --sweep 8,40 --methods eq12,limited,support+linear,best --json --plot " + chart);
+    const test::Run run = test::cinch("tightness santa --nodes 60 --frames 2 --leaf 32 --sweep 8,40 --methods "
+                                      "eq12,limited,support+linear,best --json --plot " +
+                                      chart);
     REQUIRE(run.status == 0);
     std::set<std::string> motions, methods;
     std::set<int> swept;
@@ -131,9 +134,11 @@ TEST_CASE("cinch tightness: ratios, attribution that adds up, CSV and charts")
     CHECK(methods == std::set<std::string>{"eq12", "limited", "support+linear", "best"});
     CHECK(swept == std::set<int>{8, 40});
     const std::string svg = slurp(chart);
-    CHECK_THAT(svg, Catch::Contains("<svg") && Catch::Contains("BVH level") && Catch::Contains("true radius") && Catch::Contains("support+linear"));
+    CHECK_THAT(svg, Catch::Contains("<svg") && Catch::Contains("BVH level") && Catch::Contains("true radius") &&
+                        Catch::Contains("support+linear"));
 
-    const test::Run csv = test::cinch("tightness fish --nodes 20 --frames 1 --leaf 500 --motion mild --sweep 8 --methods best --csv");
+    const test::Run csv =
+        test::cinch("tightness fish --nodes 20 --frames 1 --leaf 500 --motion mild --sweep 8 --methods best --csv");
     REQUIRE(csv.status == 0);
     REQUIRE(csv.lines().size() > 2);
     CHECK_THAT(csv.lines()[0], Catch::StartsWith("experiment,input,motion,method,n,level,bvs,mean_ratio,max_ratio"));
@@ -146,7 +151,8 @@ TEST_CASE("cinch tightness: ratios, attribution that adds up, CSV and charts")
 
 TEST_CASE("cinch cost: every arithmetic with its guarantee, exact where it says so, and the gap by passes")
 {
-    const test::Run run = test::cinch("cost santa --nodes 30 --frames 2 --leaf 200 --kdops 6,26 --seconds 0.01 --this-input-only --json");
+    const test::Run run =
+        test::cinch("cost santa --nodes 30 --frames 2 --leaf 200 --kdops 6,26 --seconds 0.01 --this-input-only --json");
     REQUIRE(run.status == 0);
     std::map<std::string, std::set<std::string>> arithmetics; // by method
     std::map<int, int> passes;
@@ -169,8 +175,9 @@ TEST_CASE("cinch cost: every arithmetic with its guarantee, exact where it says 
     CHECK(any_pareto);
     CHECK(plain_falls_below); // or the proof would be for nothing
     for (const char* method : {"convex", "eq12", "limited"})
-        for (const char* arithmetic : {"float", "double", "double, proven", "interval", "double-double", "MPFR 128", "int128 grid", "rational", "lazy exact",
-                                       "float kernel", "float kernel, proven", "double kernel", "double kernel, proven"})
+        for (const char* arithmetic :
+             {"float", "double", "double, proven", "interval", "double-double", "MPFR 128", "int128 grid", "rational",
+              "lazy exact", "float kernel", "float kernel, proven", "double kernel", "double kernel, proven"})
             CHECK(arithmetics[method].count(arithmetic) == 1);
     for (const char* method : {"local", "support", "linear", "best"})
         CHECK(arithmetics[method].count("float kernel, proven") == 1);
@@ -182,7 +189,8 @@ TEST_CASE("the instruction set can be forced, and changes no bound")
 {
     std::set<std::string> outputs;
     for (const std::string& target : kernel_targets()) {
-        const test::Run run = test::cinch_with("CINCH_TARGET=" + target, "verify santa --nodes 30 --frames 2 --leaf 50 --json");
+        const test::Run run =
+            test::cinch_with("CINCH_TARGET=" + target, "verify santa --nodes 30 --frames 2 --leaf 50 --json");
         REQUIRE(run.status == 0);
         std::string all;
         for (json r : records(run)) {

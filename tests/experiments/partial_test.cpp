@@ -39,9 +39,8 @@ long peak_kb(const std::vector<std::string>& arguments)
     }
     int status = 0;
     rusage usage{};
-    return wait4(child, &status, 0, &usage) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0
-               ? usage.ru_maxrss
-               : -1;
+    return wait4(child, &status, 0, &usage) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0 ? usage.ru_maxrss
+                                                                                                      : -1;
 }
 
 } // namespace
@@ -116,10 +115,8 @@ TEST_CASE("changes of weights are reported from rounding on, with the largest on
             test::cinch("verify " + at + "m.off --weights " + at + "w.txt --transforms " + at + "t.txt --json"));
     };
     const auto [table, records] = run("3 2\n2 0 0.5 1 0.4999\n1 0 1\n2 0 0.5 1 0.49999\n");
-    CHECK_THAT(
-        table.out,
-        Catch::Contains(
-            "2 of 3 vertices had weights that do not sum to 1 (sums 0.9999 to 1); normalised, which changed weights by up to 0.01 %"));
+    CHECK_THAT(table.out, Catch::Contains("2 of 3 vertices had weights that do not sum to 1 (sums 0.9999 to 1); "
+                                          "normalised, which changed weights by up to 0.01 %"));
     for (const std::string& line : records.lines()) {
         CHECK(json::parse(line)["weights_normalised"] == 2);
         CHECK(json::parse(line)["largest_weight_change"].get<double>() == Approx(1e-4).epsilon(1e-3));

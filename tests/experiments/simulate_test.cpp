@@ -40,7 +40,8 @@ TEST_CASE("every shipped scene starts, and writes finite frames")
     REQUIRE(scenes.size() >= 16);
     for (const std::string& scene : scenes) {
         INFO(scene);
-        const auto run = test::cinch("simulate " + scene + " --duration 0.05 --json --frames " + (folder.path() / scene).string());
+        const auto run =
+            test::cinch("simulate " + scene + " --duration 0.05 --json --frames " + (folder.path() / scene).string());
         REQUIRE(run.status == 0);
         CHECK(run.err.empty());
         const json first = json::parse(run.lines().front());
@@ -70,8 +71,10 @@ TEST_CASE("a run that is interrupted, or killed, and resumed writes the bytes of
         const std::string whole = in("whole." + kind), part = in("part." + kind), state = in("state-" + kind);
         const std::string scene = "simulate twist-180 --duration 3 --every 3 --threads 1";
         REQUIRE(test::cinch(scene + " --frames " + whole + " --meshes " + in("meshes-" + kind)).status == 0);
-        const std::string begin = scene + " --frames " + part + " --checkpoint " + state + " --meshes " + in("parts-" + kind);
-        const std::string resume = scene + " --frames " + part + " --resume " + state + " --meshes " + in("parts-" + kind);
+        const std::string begin =
+            scene + " --frames " + part + " --checkpoint " + state + " --meshes " + in("parts-" + kind);
+        const std::string resume =
+            scene + " --frames " + part + " --resume " + state + " --meshes " + in("parts-" + kind);
         test::cinch_killed(begin, 0.4);
         for (const double after : {0.25, 0.35, 0.3})
             if (fs::exists(state))
@@ -86,7 +89,8 @@ TEST_CASE("a run that is interrupted, or killed, and resumed writes the bytes of
         }
         CHECK(meshes == 181);
     }
-    const auto stopped = test::cinch_interrupted("simulate twist-180 --duration 10000 --frames " + in("long") + " --checkpoint " + in("long-state"), 3);
+    const auto stopped = test::cinch_interrupted(
+        "simulate twist-180 --duration 10000 --frames " + in("long") + " --checkpoint " + in("long-state"), 3);
     CHECK(stopped.status == 130);
     CHECK(stopped.err.find("interrupted at frame") != std::string::npos);
     CHECK(stopped.out.find("elastic") != std::string::npos); // what is done is shown
@@ -102,7 +106,8 @@ TEST_CASE("checkpoints continue only what they are of")
     TemporaryFolder folder;
     const std::string state = (folder.path() / "s").string(), frames = (folder.path() / "f").string();
     REQUIRE(test::cinch("simulate skin --duration 0.2 --checkpoint " + state + " --frames " + frames).status == 0);
-    CHECK(test::cinch("simulate skin --duration 0.3 --resume " + state + " --frames " + frames).status == 0); // longer is fine
+    CHECK(test::cinch("simulate skin --duration 0.3 --resume " + state + " --frames " + frames).status ==
+          0); // longer is fine
     CHECK(read_frames(frames).bodies[0].frame_count() == 19);
     auto refused = [&](const std::string& arguments, const std::string& why) {
         const auto run = test::cinch("simulate " + arguments);
@@ -126,7 +131,9 @@ TEST_CASE("checkpoints continue only what they are of")
         std::string changed = bytes;
         changed[i] = static_cast<char>(changed[i] ^ 4);
         refused("skin --resume " + folder.write("d", changed).string(), i < 9 ? "is no checkpoint" : "was changed");
-        refused("skin --resume " + folder.write("d", bytes.substr(0, i)).string(), i == 0 ? "is empty" : i < 73 ? "is no checkpoint" : "was changed");
+        refused("skin --resume " + folder.write("d", bytes.substr(0, i)).string(), i == 0   ? "is empty"
+                                                                                   : i < 73 ? "is no checkpoint"
+                                                                                            : "was changed");
     }
     // Damage that a checksum does not see: fields that contradict each other, a program that is another.
     const std::string written = bytes_of(frames);
@@ -134,7 +141,8 @@ TEST_CASE("checkpoints continue only what they are of")
         folder.write("f", written);
         std::string changed = bytes;
         changed[i] = static_cast<char>(changed[i] ^ 0x40);
-        const auto run = test::cinch("simulate skin --duration 0.3 --resume " + folder.write("d", with_checksum(changed)).string() + " --frames " + frames);
+        const auto run = test::cinch("simulate skin --duration 0.3 --resume " +
+                                     folder.write("d", with_checksum(changed)).string() + " --frames " + frames);
         INFO(i << " " << run.err);
         if (i < 65)
             CHECK(run.status == 2);
@@ -149,9 +157,11 @@ TEST_CASE("checkpoints continue only what they are of")
     refused("skin --resume " + folder.write("d", with_checksum(other)).string(), "was written by cinch 9");
     std::string edited = bytes_of(frames);
     edited[edited.size() / 2] ^= 1;
-    refused("skin --duration 0.3 --resume " + state + " --frames " + folder.write("edited", edited).string(), "does not have the");
+    refused("skin --duration 0.3 --resume " + state + " --frames " + folder.write("edited", edited).string(),
+            "does not have the");
     CHECK(bytes_of(folder.path() / "edited") == edited);
-    refused("skin --duration 0.1 --resume " + state + " --frames " + frames, "is at frame 18, and this run ends with frame 6");
+    refused("skin --duration 0.1 --resume " + state + " --frames " + frames,
+            "is at frame 18, and this run ends with frame 6");
     refused("skin --resume " + state + " --frames " + folder.write("short", "abc").string(), "does not have the");
     refused("skin --resume " + state, "continues with --frames FILE, binary");
     refused("skin --resume " + state + " --frames " + frames + ".jsonl", "continues with --frames FILE, binary");
@@ -160,13 +170,18 @@ TEST_CASE("checkpoints continue only what they are of")
     CHECK(read_frames(frames).bodies[0].frame_count() == 19); // and left alone
     refused("skin --checkpoint /dev/full", "is no regular file");
     // A surface that changed beside the scene.
-    const std::string own = R"({"duration": 0.05, "bodies": [{"surface": "m.off", "places": [[0,0,0],[1,0,0],[0,1,0],[0,0,1]]}], "effects": [{"effect": "gravity"}]})";
-    const std::string scene = folder.write("own.json", own).string(), mesh = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
+    const std::string own =
+        R"({"duration": 0.05, "bodies": [{"surface": "m.off", "places": [[0,0,0],[1,0,0],[0,1,0],[0,0,1]]}], "effects": [{"effect": "gravity"}]})";
+    const std::string scene = folder.write("own.json", own).string(),
+                      mesh = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
     folder.write("m.off", mesh);
     REQUIRE(test::cinch("simulate " + scene + " --checkpoint " + state + "3").status == 0);
     folder.write("m.off", "OFF\n4 4 0\n0 0 0\n2 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n");
     refused(scene + " --resume " + state + "3", "is of another scene");
-    refused(folder.write("gone.json", R"({"duration": 1, "bodies": [{"surface": "gone.off", "nodes": 4}], "effects": []})").string(), "gone.json: /bodies/0/surface: ");
+    refused(
+        folder.write("gone.json", R"({"duration": 1, "bodies": [{"surface": "gone.off", "nodes": 4}], "effects": []})")
+            .string(),
+        "gone.json: /bodies/0/surface: ");
     refused("skin --duration nan", "--duration");
     refused("skin --duration 1e9", "--duration");
     refused("skin --frames /nonexistent/f", "cannot be written");
@@ -175,13 +190,15 @@ TEST_CASE("checkpoints continue only what they are of")
     refused("nothing.json", "no such file");
     refused("brain-pull --nodes 0", "--nodes");
     refused("beam --nodes 5", "gives them");
-    refused(folder.write("scene.json", R"({"duration": 1, "bodies": [{"surface": "box"}], "effects": []})").string(), "scene.json: /bodies/0/box: is missing");
+    refused(folder.write("scene.json", R"({"duration": 1, "bodies": [{"surface": "box"}], "effects": []})").string(),
+            "scene.json: /bodies/0/box: is missing");
 }
 
 TEST_CASE("a step that cannot be solved is reported with time and body, and no file has NaN")
 {
     TemporaryFolder folder;
-    const fs::path scene = folder.write("hard.json", R"({"duration": 1, "integrator": {"method": "implicit", "iterations": 1, "tolerance": 1e-12},
+    const fs::path scene = folder.write(
+        "hard.json", R"({"duration": 1, "integrator": {"method": "implicit", "iterations": 1, "tolerance": 1e-12},
         "bodies": [{"name": "bar", "surface": "box", "box": [1, 0.3, 0.3], "cells": [8, 2, 2], "lattice": [6, 2, 2], "spin": [0, 9, 0]}],
         "effects": [{"effect": "elastic", "young": 1e7}]})");
     const auto run = test::cinch("simulate " + scene.string() + " --frames " + (folder.path() / "f").string());
@@ -191,37 +208,49 @@ TEST_CASE("a step that cannot be solved is reported with time and body, and no f
     CHECK(read_frames(folder.path() / "f.part").bodies[0].frame_count() == 1);
 }
 
-TEST_CASE("what is stiff, far away, hardly drawn or tiny moves, or is reported: with time, body, and by how much it is off")
+TEST_CASE(
+    "what is stiff, far away, hardly drawn or tiny moves, or is reported: with time, body, and by how much it is off")
 {
     TemporaryFolder folder;
     auto scene = [](const std::string& body, const std::string& young, const std::string& more) {
-        return R"({"duration": 0.5, "bodies": [{"name": "bar", "surface": "box", "cells": [4, 2, 2], "lattice": [6, 3, 3], )" + body + R"(}], "effects": [{"effect": "elastic", "young": )" + young +
-               R"(}, {"effect": "hourglass"}, )" + more + "]}";
+        return R"({"duration": 0.5, "bodies": [{"name": "bar", "surface": "box", "cells": [4, 2, 2], "lattice": [6, 3, 3], )" +
+               body + R"(}], "effects": [{"effect": "elastic", "young": )" + young + R"(}, {"effect": "hourglass"}, )" +
+               more + "]}";
     };
-    const std::string metre = R"("box": [1, 0.3, 0.3])", gravity = R"({"effect": "gravity", "acceleration": [0, 0, -9.81]})";
+    const std::string metre = R"("box": [1, 0.3, 0.3])",
+                      gravity = R"({"effect": "gravity", "acceleration": [0, 0, -9.81]})";
     struct Case {
         std::string text;
         double fall; ///< m
     };
     const double steps = 30.0 * 31 / 2 / 3600; // implicit Euler's parabola
-    for (const Case& c : {Case{scene(metre, "1e16", gravity), 9.81 * steps}, Case{scene(metre, "1e18", gravity), 9.81 * steps},
-                          Case{scene(metre + R"(, "position": [0, 0, 1e12])", "1e6", gravity), 9.81 * steps},
-                          Case{scene(metre, "1e6", R"({"effect": "gravity", "acceleration": [0, 0, -1e-5]})"), 1e-5 * steps}}) {
+    for (const Case& c :
+         {Case{scene(metre, "1e16", gravity), 9.81 * steps}, Case{scene(metre, "1e18", gravity), 9.81 * steps},
+          Case{scene(metre + R"(, "position": [0, 0, 1e12])", "1e6", gravity), 9.81 * steps},
+          Case{scene(metre, "1e6", R"({"effect": "gravity", "acceleration": [0, 0, -1e-5]})"), 1e-5 * steps}}) {
         const fs::path file = folder.write("falls.json", c.text), frames = folder.path() / "falls.frames";
         INFO(c.text);
         const auto run = test::cinch("simulate " + file.string() + " --frames " + frames.string());
         INFO(run.err);
         REQUIRE(run.status == 0);
         const Clip clip = read_frames(frames).bodies[0];
-        CHECK(clip.frame(0)[0].m[2][3] - clip.frame(clip.frame_count() - 1)[0].m[2][3] == Approx(c.fall).epsilon(1e-4).margin(std::abs(clip.frame(0)[0].m[2][3]) * 0x1p-51));
+        CHECK(clip.frame(0)[0].m[2][3] - clip.frame(clip.frame_count() - 1)[0].m[2][3] ==
+              Approx(c.fall).epsilon(1e-4).margin(std::abs(clip.frame(0)[0].m[2][3]) * 0x1p-51));
     }
-    const fs::path tiny = folder.write("tiny.json", scene(R"("box": [1e-6, 3e-7, 3e-7], "spin": [0, 0, 6.283185307])", "1e6", R"({"effect": "damping", "rate": 0})")), turned = folder.path() / "turned";
+    const fs::path tiny = folder.write("tiny.json", scene(R"("box": [1e-6, 3e-7, 3e-7], "spin": [0, 0, 6.283185307])",
+                                                          "1e6", R"({"effect": "damping", "rate": 0})")),
+                   turned = folder.path() / "turned";
     REQUIRE(test::cinch("simulate " + tiny.string() + " --frames " + turned.string()).status == 0);
     const Clip turning = read_frames(turned).bodies[0];
     const AffineMap half = turning.frame(turning.frame_count() - 1)[0];
     CHECK(half.m[0][0] < -0.7); // half a turn, less what implicit Euler damps
     // Held by an end that turns, stiffer than the places of that end are fine.
-    const fs::path hard = folder.write("hard.json", scene(metre, "1e19", gravity + R"(, {"effect": "scripted", "nodes": {"box": [[-1, -1, -1], [-0.3, 1, 1]]}, "axis": [1, 1, 0], "rate": 3})"));
+    const fs::path hard = folder.write(
+        "hard.json",
+        scene(
+            metre, "1e19",
+            gravity +
+                R"(, {"effect": "scripted", "nodes": {"box": [[-1, -1, -1], [-0.3, 1, 1]]}, "axis": [1, 1, 0], "rate": 3})"));
     const auto run = test::cinch("simulate " + hard.string() + " --frames " + (folder.path() / "h").string());
     CHECK(run.status == 1);
     CHECK(run.err.find("body 'bar' at 0 s: rounding: accelerations are off by ") != std::string::npos);
@@ -229,7 +258,8 @@ TEST_CASE("what is stiff, far away, hardly drawn or tiny moves, or is reported: 
     CHECK(read_frames(folder.path() / "h.part").bodies[0].frame_count() == 1);
 }
 
-TEST_CASE("santa-ring with 550 nodes is stable at 1/60 s over four decades of stiffness, and gains no energy without work")
+TEST_CASE(
+    "santa-ring with 550 nodes is stable at 1/60 s over four decades of stiffness, and gains no energy without work")
 {
     std::ifstream in(fs::path(CINCH_DATA) / "scenes" / "santa-ring-2.json");
     const json original = json::parse(in);
@@ -265,8 +295,11 @@ TEST_CASE("santa-ring with 550 nodes is stable at 1/60 s over four decades of st
 TEST_CASE("positions that leave the numbers end a run, and are not written")
 {
     TemporaryFolder folder;
-    const std::string body = R"("bodies": [{"surface": "box", "box": [1, 1, 1], "cells": [1, 1, 1], "lattice": [2, 2, 2])";
-    const fs::path flung = folder.write("flung.json", R"({"duration": 10, )" + body + R"(}], "effects": [{"effect": "scripted", "velocity": [1e308, 0, 0]}]})");
+    const std::string body =
+        R"("bodies": [{"surface": "box", "box": [1, 1, 1], "cells": [1, 1, 1], "lattice": [2, 2, 2])";
+    const fs::path flung =
+        folder.write("flung.json", R"({"duration": 10, )" + body +
+                                       R"(}], "effects": [{"effect": "scripted", "velocity": [1e308, 0, 0]}]})");
     const std::string frames = (folder.path() / "f").string();
     const auto run = test::cinch("simulate " + flung.string() + " --frames " + frames);
     CHECK(run.status == 1);
@@ -276,7 +309,8 @@ TEST_CASE("positions that leave the numbers end a run, and are not written")
     for (std::size_t f = 0; f < written.bodies[0].frame_count(); ++f)
         for (const AffineMap& map : written.bodies[0].frame(f))
             REQUIRE(std::isfinite(map.m[0][3]));
-    const fs::path far = folder.write("far.json", R"({"duration": 0.1, )" + body + R"(, "position": [1e39, 0, 0]}], "effects": []})");
+    const fs::path far =
+        folder.write("far.json", R"({"duration": 0.1, )" + body + R"(, "position": [1e39, 0, 0]}], "effects": []})");
     const auto meshes = test::cinch("simulate " + far.string() + " --meshes " + (folder.path() / "m").string());
     CHECK(meshes.status == 1);
     CHECK(meshes.err.find("beyond what a mesh file holds") != std::string::npos);
@@ -287,7 +321,9 @@ TEST_CASE("meshes are those of the frames")
 {
     TemporaryFolder folder;
     for (const std::string format : {"ply", "obj"}) {
-        REQUIRE(test::cinch("simulate beam --duration 0.1 --mesh-format " + format + " --meshes " + folder.path().string()).status == 0);
+        REQUIRE(
+            test::cinch("simulate beam --duration 0.1 --mesh-format " + format + " --meshes " + folder.path().string())
+                .status == 0);
         const TriangleMesh mesh = read_mesh(folder.path() / ("beam-00006." + format)).mesh;
         CHECK(mesh.vertices.size() == 1610);
         double lowest = 0;
@@ -303,7 +339,8 @@ TEST_CASE("what is not named is said to be left out")
     REQUIRE(run.status == 0);
     std::string text = run.out;
     std::replace(text.begin(), text.end(), '\n', ' ');
-    CHECK(text.find("never constructed: pulling volume plasticity damping ground contact scripted") != std::string::npos);
+    CHECK(text.find("never constructed: pulling volume plasticity damping ground contact scripted") !=
+          std::string::npos);
     for (const std::string& line : run.lines())
         CHECK(line.size() <= 80);
 }

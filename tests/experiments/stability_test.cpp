@@ -36,8 +36,10 @@ TEST_CASE("cases that need a safeguard fail without it")
         Missing missing;
         std::vector<std::string> cases;
     };
-    for (const Need& need : {Need{Missing::hourglass, {"36 alternating motion", "20 collapsed start"}}, Need{Missing::completion, {"01 coplanar nodes", "01 collinear nodes"}},
-                             Need{Missing::projection, {"14 reflected start", "20 inverted start", "20 collapsed start"}}})
+    for (const Need& need :
+         {Need{Missing::hourglass, {"36 alternating motion", "20 collapsed start"}},
+          Need{Missing::completion, {"01 coplanar nodes", "01 collinear nodes"}},
+          Need{Missing::projection, {"14 reflected start", "20 inverted start", "20 collapsed start"}}})
         for (const StabilityCase& c : stability_cases())
             if (std::find(need.cases.begin(), need.cases.end(), c.name) != need.cases.end()) {
                 INFO(c.name);

@@ -37,7 +37,8 @@ TEST_CASE("verify proves a shape and says so in JSON Lines")
     CHECK(s["default_clearly_above_eq12"] == 0);
     CHECK(s["complete"] == true);
     CHECK(s["filter_hit_rate"] > 0.95);
-    for (const char* field : {"input", "method", "seconds", "version", "commit", "compiler", "flags", "cpu", "simd_target", "seed"})
+    for (const char* field :
+         {"input", "method", "seconds", "version", "commit", "compiler", "flags", "cpu", "simd_target", "seed"})
         CHECK(s.contains(field));
     std::size_t bounds = 0;
     for (const std::string& line : run.lines()) {
@@ -45,7 +46,8 @@ TEST_CASE("verify proves a shape and says so in JSON Lines")
         if (!record.contains("level"))
             continue;
         bounds += record["proven"].get<std::size_t>();
-        for (const char* field : {"bvs", "mean_n", "mean_ratio", "max_ratio", "box_loss", "interval_loss", "corner_loss", "rounding_loss"})
+        for (const char* field :
+             {"bvs", "mean_n", "mean_ratio", "max_ratio", "box_loss", "interval_loss", "corner_loss", "rounding_loss"})
             CHECK(record[field].is_number());
     }
     CHECK(bounds == s["bounds"]);
@@ -55,7 +57,8 @@ TEST_CASE("oriented boxes with reflected and exchanged axes are proven")
 {
     for (const char* name : {"F01_oriented_box_sign.obj", "F01_oriented_box_sign_skinned.gltf"})
         for (const char* k : {"6", "14", "18", "26"}) {
-            const test::Run run = test::cinch(std::string("verify " CINCH_REPORTS "/") + name + " --rest obb --method limited --json --kdop " + k);
+            const test::Run run = test::cinch(std::string("verify " CINCH_REPORTS "/") + name +
+                                              " --rest obb --method limited --json --kdop " + k);
             CHECK(run.status == 0);
             CHECK(summary(run)["violated"] == 0);
         }
@@ -65,7 +68,9 @@ TEST_CASE("where two joints turn against each other, the default is not looser t
 {
     double ratio[2];
     for (int i = 0; i < 2; ++i) {
-        const test::Run run = test::cinch(std::string("verify " CINCH_REPORTS "/F15_best_looser_than_eq12.gltf --json --method ") + (i ? "eq12" : "best"));
+        const test::Run run =
+            test::cinch(std::string("verify " CINCH_REPORTS "/F15_best_looser_than_eq12.gltf --json --method ") +
+                        (i ? "eq12" : "best"));
         CHECK(run.status == 0);
         ratio[i] = json::parse(run.lines().front())["mean_ratio"];
         CHECK(summary(run)["default_compared"] == (i ? json(0) : summary(run)["bounds"]));
@@ -78,7 +83,9 @@ TEST_CASE("where two joints turn against each other, the default is not looser t
 
 TEST_CASE("every method is proven on the table too, and verdict and order are stated")
 {
-    for (const char* method : {"convex", "sphere", "corners --leaf 16", "eq12", "limited", "local --passes 3", "support --remember", "linear --precision double", "best", "vertices", "support+linear"}) {
+    for (const char* method :
+         {"convex", "sphere", "corners --leaf 16", "eq12", "limited", "local --passes 3", "support --remember",
+          "linear --precision double", "best", "vertices", "support+linear"}) {
         const test::Run run = test::cinch(std::string("verify santa --frames 2 --method ") + method);
         CHECK(run.status == 0);
         CHECK_THAT(run.out, Catch::Contains(" bounds, ") && Catch::Contains(" proven, 0 violated\n") &&
@@ -90,7 +97,8 @@ TEST_CASE("the same seed gives the same records, whatever the thread count, and 
 {
     auto records = [](const std::string& options) {
         json all;
-        for (const std::string& line : test::cinch("verify fish --frames 1 --nodes 40 --leaf 8 --json " + options).lines()) {
+        for (const std::string& line :
+             test::cinch("verify fish --frames 1 --nodes 40 --leaf 8 --json " + options).lines()) {
             json record = json::parse(line);
             for (const char* field : {"command", "seconds", "threads", "seed"})
                 record.erase(field);
@@ -105,7 +113,8 @@ TEST_CASE("the same seed gives the same records, whatever the thread count, and 
 
 TEST_CASE("the BVs that stand after a collision query are proven, merged ones included, in float and in double")
 {
-    for (const char* options : {"santa-ring-1 --frames 12", "santa-ring-1 --frames 12 --precision double", "santa-ring-6 --frames 4 --kdop 18 --method eq12 --leaf 1",
+    for (const char* options : {"santa-ring-1 --frames 12", "santa-ring-1 --frames 12 --precision double",
+                                "santa-ring-6 --frames 4 --kdop 18 --method eq12 --leaf 1",
                                 "santa-ring-5 --frames 4 --kdop 14 --rest obb --method limited --leaf 8"}) {
         INFO(options);
         const test::Run run = test::cinch(std::string("verify --update lazy --json ") + options);
@@ -116,7 +125,9 @@ TEST_CASE("the BVs that stand after a collision query are proven, merged ones in
         CHECK(s["infinite"] == 0);
         for (const char* kind : {"by_methods", "merged", "from_vertices", "left", "pairs"})
             CHECK(s[kind] > 0);
-        CHECK(s["bounds"] == s["kdop"].get<std::size_t>() * (s["by_methods"].get<std::size_t>() + s["merged"].get<std::size_t>() + s["from_vertices"].get<std::size_t>()));
+        CHECK(s["bounds"] ==
+              s["kdop"].get<std::size_t>() * (s["by_methods"].get<std::size_t>() + s["merged"].get<std::size_t>() +
+                                              s["from_vertices"].get<std::size_t>()));
     }
     const json full = summary(test::cinch("verify fishes --update full --frames 2 --json"));
     CHECK(full["bounds"] == full["proven"]);
@@ -131,7 +142,8 @@ TEST_CASE("mutation: bounds of the frame before, and damaged rest data, are foun
 {
     for (const char* kind : {"stale", "lower-h", "swap-interval"}) {
         INFO(kind);
-        const test::Run run = test::cinch(std::string("verify santa-ring-1 --update lazy --frames 3 --json --sabotage ") + kind);
+        const test::Run run =
+            test::cinch(std::string("verify santa-ring-1 --update lazy --frames 3 --json --sabotage ") + kind);
         CHECK(run.status == 1);
         CHECK(summary(run)["violated"] > 0);
     }
@@ -139,8 +151,10 @@ TEST_CASE("mutation: bounds of the frame before, and damaged rest data, are foun
 
 TEST_CASE("what does not go with a collision query is refused")
 {
-    for (const char* options : {"brain --update lazy", "santa-ring-1 --body santa-1 --update lazy", "santa-ring-1 --update lazy --leaf 17", "santa-ring-1 --update full --volume",
-                                "santa-ring-1 --update lazy --sabotage no-rounding", "santa-ring-1 --sabotage stale", "santa-ring-1 --update eager"}) {
+    for (const char* options :
+         {"brain --update lazy", "santa-ring-1 --body santa-1 --update lazy", "santa-ring-1 --update lazy --leaf 17",
+          "santa-ring-1 --update full --volume", "santa-ring-1 --update lazy --sabotage no-rounding",
+          "santa-ring-1 --sabotage stale", "santa-ring-1 --update eager"}) {
         INFO(options);
         const test::Run run = test::cinch(std::string("verify --frames 2 ") + options);
         CHECK(run.status == 2);
@@ -153,13 +167,15 @@ TEST_CASE("mutation: sabotaged bounds are reported and exit 1")
 {
     for (const char* kind : {"no-rounding", "swap-interval", "lower-h"}) {
         INFO(kind);
-        const test::Run run = test::cinch(std::string("verify brain-3500 --nodes 60 --frames 2 --json --sabotage ") + kind);
+        const test::Run run =
+            test::cinch(std::string("verify brain-3500 --nodes 60 --frames 2 --json --sabotage ") + kind);
         CHECK(run.status == 1);
         const json s = summary(run);
         CHECK(s["violated"] > 0);
         const test::Run table = test::cinch(std::string("verify brain-3500 --nodes 60 --frames 2 --sabotage ") + kind);
         CHECK(table.status == 1);
-        CHECK_THAT(table.out, Catch::Contains("violated: frame 0, level 0, BV 0") || Catch::Contains("violated: frame"));
+        CHECK_THAT(table.out,
+                   Catch::Contains("violated: frame 0, level 0, BV 0") || Catch::Contains("violated: frame"));
     }
 }
 
@@ -170,13 +186,19 @@ TEST_CASE("a mesh with weights and transforms of one's own")
     folder.write("m.off", "OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n3 0 1 2\n3 1 3 2\n");
     folder.write("w.txt", "4 2\n1 0 1\n2 0 0.25 1 0.25\n2 1 1 0 3\n1 1 0\n");
     folder.write("t.txt", "2\nstill 1 2\n0 1 0 0 0 0 1 0 0 0 0 1 0 1 0 0 0 0 1 0 0 0 0 1 0\n"
-                          "move 2 2\n0 1 0 0 0 0 1 0 0 0 0 1 0 1 0 0 0 0 1 0 0 0 0 1 0\n0.5 0 -1 0 0 1 0 0 0 0 0 1 0 1 0 0 5 0 1 0 0 0 0 1 0\n");
-    const test::Run run = test::cinch("verify " + at + "m.off --weights " + at + "w.txt --transforms " + at + "t.txt --clip move --kdop 26");
+                          "move 2 2\n0 1 0 0 0 0 1 0 0 0 0 1 0 1 0 0 0 0 1 0 0 0 0 1 0\n0.5 0 -1 0 0 1 0 0 0 0 0 1 0 1 "
+                          "0 0 5 0 1 0 0 0 0 1 0\n");
+    const test::Run run = test::cinch("verify " + at + "m.off --weights " + at + "w.txt --transforms " + at +
+                                      "t.txt --clip move --kdop 26");
     CHECK(run.status == 0);
-    CHECK_THAT(run.out, Catch::Contains("2 simulation nodes") && Catch::Contains("motion 'move', 2 frames") && Catch::Contains("sums 0.5 to 4") && Catch::Contains("which changed weights by up to 100 %") &&
-                            Catch::Contains("1 vertex has no weight at all") && Catch::Contains("156 bounds, 156 proven, 0 violated"));
-    CHECK_THAT(test::cinch("verify " + at + "m.off --weights " + at + "w.txt --transforms " + at + "t.txt --clip run").err,
-               Catch::Contains("has no clip 'run'; it has still, move"));
+    CHECK_THAT(run.out, Catch::Contains("2 simulation nodes") && Catch::Contains("motion 'move', 2 frames") &&
+                            Catch::Contains("sums 0.5 to 4") &&
+                            Catch::Contains("which changed weights by up to 100 %") &&
+                            Catch::Contains("1 vertex has no weight at all") &&
+                            Catch::Contains("156 bounds, 156 proven, 0 violated"));
+    CHECK_THAT(
+        test::cinch("verify " + at + "m.off --weights " + at + "w.txt --transforms " + at + "t.txt --clip run").err,
+        Catch::Contains("has no clip 'run'; it has still, move"));
 }
 
 TEST_CASE("reference meshes and characters are proven")
@@ -185,14 +207,16 @@ TEST_CASE("reference meshes and characters are proven")
     if (!folder)
         return;
     for (const char* kdop : {" --kdop 6", " --kdop 14"})
-        for (const char* input : {"brain_conte69_lh_30000.ply --nodes 509", "fish_blub_7106.obj", "skin/CesiumMan.glb", "skin/RiggedFigure.glb",
-                                  "skin/robot.glb --clip Robot_Dance", "nasty_spider.obj", "nasty_wuson.off"}) {
+        for (const char* input :
+             {"brain_conte69_lh_30000.ply --nodes 509", "fish_blub_7106.obj", "skin/CesiumMan.glb",
+              "skin/RiggedFigure.glb", "skin/robot.glb --clip Robot_Dance", "nasty_spider.obj", "nasty_wuson.off"}) {
             INFO(input << kdop);
             const test::Run run = test::cinch("verify " + folder->string() + "/" + input + kdop);
             CHECK(run.status == 0);
             CHECK_THAT(run.out, Catch::Contains(" proven, 0 violated\n"));
             if (std::string(input) == "skin/RiggedFigure.glb")
-                CHECK_THAT(run.out, Catch::Contains("13 of 130 vertices had weights that do not sum to 1 (sums 0.20009"));
+                CHECK_THAT(run.out,
+                           Catch::Contains("13 of 130 vertices had weights that do not sum to 1 (sums 0.20009"));
         }
 }
 
@@ -208,10 +232,12 @@ TEST_CASE("overflow and points: infinite bounds are counted, ratios that do not 
     folder.write("w1.txt", "1 1\n1 0 1\n");
     folder.write("identity.txt", "1\na 1 1\n0 1 0 0 0 0 1 0 0 0 0 1 0\n");
     folder.write("grow.txt", "1\na 1 1\n0 1e200 0 0 0 0 -1e200 0 0 0 0 1 0\n");
-    auto check = [&](const std::string& mesh, const std::string& weights, const std::string& transforms, bool overflows) {
+    auto check = [&](const std::string& mesh, const std::string& weights, const std::string& transforms,
+                     bool overflows) {
         for (const char* options : {"", " --kdop 14", " --method vertices", " --method eq12 --kdop 26"}) {
             INFO(mesh << options);
-            const std::string run = "verify " + at + mesh + " --weights " + at + weights + " --transforms " + at + transforms + options;
+            const std::string run =
+                "verify " + at + mesh + " --weights " + at + weights + " --transforms " + at + transforms + options;
             const test::Run table = test::cinch(run);
             CHECK(table.status == 0);
             CHECK_THAT(table.out, !Catch::Contains("nan"));
@@ -227,7 +253,9 @@ TEST_CASE("overflow and points: infinite bounds are counted, ratios that do not 
 TEST_CASE("volumes, exact attribution and VIPR files come on request")
 {
     const test::TemporaryFolder folder;
-    const test::Run run = test::cinch("verify santa --method limited --frames 2 --leaf 64 --kdop 14 --volume --json --vipr " + (folder.path() / "v").string());
+    const test::Run run =
+        test::cinch("verify santa --method limited --frames 2 --leaf 64 --kdop 14 --volume --json --vipr " +
+                    (folder.path() / "v").string());
     CHECK(run.status == 0);
     std::size_t levels = 0, attributed = 0;
     for (const std::string& line : run.lines()) {

@@ -8,11 +8,11 @@
 
 #include <zlib.h>
 
+#include "cinch/surface.hpp"
 #include "experiments/report/view.hpp"
 #include "experiments/report/view/grid.hpp"
 #include "experiments/report/view/pack.hpp"
 #include "tests/support.hpp"
-#include "cinch/surface.hpp"
 
 using namespace cinch;
 using Json = nlohmann::ordered_json;
@@ -27,7 +27,11 @@ std::vector<std::uint8_t> bytes_of(const std::string& base64)
     for (const char c : base64) {
         if (c == '=')
             break;
-        bits = bits << 6 | static_cast<std::uint32_t>(c == '+' ? 62 : c == '/' ? 63 : c >= 'a' ? c - 'a' + 26 : c >= 'A' ? c - 'A' : c - '0' + 52);
+        bits = bits << 6 | static_cast<std::uint32_t>(c == '+'   ? 62
+                                                      : c == '/' ? 63
+                                                      : c >= 'a' ? c - 'a' + 26
+                                                      : c >= 'A' ? c - 'A'
+                                                                 : c - '0' + 52);
         if ((count += 6) >= 8)
             out.push_back(static_cast<std::uint8_t>(bits >> (count -= 8)));
     }
@@ -37,7 +41,10 @@ std::vector<std::uint8_t> bytes_of(const std::string& base64)
 struct Unpacked {
     std::size_t frames, items, components;
     std::vector<std::int32_t> value;
-    std::int32_t at(std::size_t f, std::size_t i, std::size_t c) const { return value[(f * items + i) * components + c]; }
+    std::int32_t at(std::size_t f, std::size_t i, std::size_t c) const
+    {
+        return value[(f * items + i) * components + c];
+    }
 };
 
 Unpacked unpack(const Json& packed, std::span<const References> references = {})
@@ -60,7 +67,9 @@ Unpacked unpack(const Json& packed, std::span<const References> references = {})
         for (std::size_t i = 1; i < out.items; ++i)
             for (std::size_t c = 0; c < out.components; ++c) {
                 auto change = [&](std::size_t item) { return x[f * frame + item * out.components + c]; };
-                x[f * frame + i * out.components + c] += references.empty() ? change(i - 1) : change(references[i].a) + change(references[i].b) - change(references[i].c);
+                x[f * frame + i * out.components + c] +=
+                    references.empty() ? change(i - 1)
+                                       : change(references[i].a) + change(references[i].b) - change(references[i].c);
             }
     for (std::size_t i = frame; i < count; ++i)
         x[i] += x[i - frame];
@@ -115,7 +124,8 @@ TEST_CASE("the grid rounds supports so far outward that they hold for rounded po
             for (int i = 0; i < 2000; ++i) {
                 Vec3 v;
                 for (int r = 0; r < 3; ++r)
-                    v[r] = low[r] + (high[r] - low[r]) * ((state = state * 1664525u + 1013904223u) >> 8) / double(1 << 24);
+                    v[r] =
+                        low[r] + (high[r] - low[r]) * ((state = state * 1664525u + 1013904223u) >> 8) / double(1 << 24);
                 const auto g = grid.point(v);
                 for (int r = 0; r < 3; ++r) {
                     REQUIRE(g[static_cast<std::size_t>(r)] >= 0);
@@ -125,7 +135,8 @@ TEST_CASE("the grid rounds supports so far outward that they hold for rounded po
                     for (const bool against : {false, true}) {
                         const int sign = against ? -1 : 1;
                         const double along = sign * (a[0] * v[0] + a[1] * v[1] + a[2] * v[2]);
-                        const std::int32_t bound = grid.support(a, against, std::nextafter(std::nextafter(along, HUGE_VAL), HUGE_VAL));
+                        const std::int32_t bound =
+                            grid.support(a, against, std::nextafter(std::nextafter(along, HUGE_VAL), HUGE_VAL));
                         const std::int32_t drawn = sign * (a[0] * g[0] + a[1] * g[1] + a[2] * g[2]);
                         REQUIRE(drawn <= bound);
                         REQUIRE(bound <= drawn + 4);
@@ -138,7 +149,8 @@ TEST_CASE("the grid rounds supports so far outward that they hold for rounded po
         }
 }
 
-TEST_CASE("what is drawn of every bound contains what is drawn of the surface, by every method, frame, level and direction")
+TEST_CASE(
+    "what is drawn of every bound contains what is drawn of the surface, by every method, frame, level and direction")
 {
     ViewRequest santas = request("santa-ring-1", 8), brain = request("brain-3500", 6), sheet = request("sheet", 5);
     santas.levels = 5;
@@ -151,7 +163,8 @@ TEST_CASE("what is drawn of every bound contains what is drawn of the surface, b
         CAPTURE(r.scene);
         const Json view = make_view(r);
         const std::vector<std::uint32_t> corners = corners_of(view);
-        const std::size_t vertices = view["positions"]["shape"][1], frames = view["time_s"].size(), bvs = view["bvs"]["first"].size();
+        const std::size_t vertices = view["positions"]["shape"][1], frames = view["time_s"].size(),
+                          bvs = view["bvs"]["first"].size();
         REQUIRE(frames == r.frames);
         const Unpacked positions = unpack(view["positions"], parallelograms(corners, vertices));
         const auto axes = axes_of(r.kdop);
@@ -196,7 +209,8 @@ TEST_CASE("what is drawn of every bound contains what is drawn of the surface, b
 TEST_CASE("intersecting triangles of a view are those of its pairs, and other bodies' too")
 {
     const Json view = make_view(request("santa-ring-5", 6));
-    const auto pairs = view["contacts"]["pairs"].get<std::vector<std::size_t>>(), count = view["contacts"]["count"].get<std::vector<std::size_t>>();
+    const auto pairs = view["contacts"]["pairs"].get<std::vector<std::size_t>>(),
+               count = view["contacts"]["count"].get<std::vector<std::size_t>>();
     const Unpacked touching = unpack(view["contacts"]["triangles"]);
     REQUIRE(pairs.size() == 6);
     std::size_t first = 0, frames_with_some = 0, triangles = 0;

@@ -10,11 +10,11 @@
 #include <unistd.h>
 #include <zlib.h>
 
+#include "cinch/surface.hpp"
 #include "experiments/report/line_file.hpp"
 #include "experiments/report/whole_file.hpp"
 #include "tests/support.hpp"
 #include "toolkit/simulate/frame_file.hpp"
-#include "cinch/surface.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 
 using namespace cinch;
@@ -128,9 +128,11 @@ TEST_CASE("what is no regular file is written directly, and stays what it is")
     CHECK(fs::is_fifo(pipe));
     write_whole("/dev/null", "nothing");
     CHECK(fs::is_character_file("/dev/null"));
-    CHECK(complaint([] { write_whole("/dev/full", "x"); }) == "/dev/full: cannot be written: No space left on device; the disk is full");
+    CHECK(complaint([] { write_whole("/dev/full", "x"); }) ==
+          "/dev/full: cannot be written: No space left on device; the disk is full");
     CHECK_THAT(complaint([&] { WholeFile file(folder.path()); }), Catch::EndsWith("cannot be written: it is a folder"));
-    CHECK_THAT(complaint([&] { WholeFile file(folder.path() / "none/out"); }), Catch::Contains("none/out: cannot be written: No such file or directory"));
+    CHECK_THAT(complaint([&] { WholeFile file(folder.path() / "none/out"); }),
+               Catch::Contains("none/out: cannot be written: No such file or directory"));
 }
 
 TEST_CASE("no output takes the place of an input, by whatever name, and no two outputs are one file")
@@ -143,13 +145,16 @@ TEST_CASE("no output takes the place of an input, by whatever name, and no two o
     const Names before = names_in(folder.path());
     { // an output that is open when the input is named
         const WholeFile early(folder.path() / "hard");
-        CHECK_THAT(complaint([&] { guard_input(folder.path() / "link"); }), Catch::Contains("is an input of this command"));
+        CHECK_THAT(complaint([&] { guard_input(folder.path() / "link"); }),
+                   Catch::Contains("is an input of this command"));
     }
     guard_input(folder.path() / "link");
     for (const char* name : {"input.obj", "link", "hard", "sub/../input.obj"}) {
         CAPTURE(name);
-        CHECK_THAT(complaint([&] { WholeFile file(folder.path() / name); }), Catch::Contains("is an input of this command"));
-        CHECK_THAT(complaint([&] { WholeFile::continued(folder.path() / name); }), Catch::Contains("is an input of this command"));
+        CHECK_THAT(complaint([&] { WholeFile file(folder.path() / name); }),
+                   Catch::Contains("is an input of this command"));
+        CHECK_THAT(complaint([&] { WholeFile::continued(folder.path() / name); }),
+                   Catch::Contains("is an input of this command"));
     }
     CHECK(names_in(folder.path()) == before);
     CHECK(read_bytes(input) == "v 0 0 0\n");
@@ -222,8 +227,10 @@ TEST_CASE("a run that stops leaves its part, and another goes on in it")
         CHECK_THAT(complaint([&] { WholeFile::continued(file); }), Catch::Contains("frames: is named for two outputs"));
     }
     CHECK(names_in(folder.path()) == Names{"frames.part"});
-    CHECK_THAT(complaint([&] { WholeFile::continued(file, 5, checksum("01235")); }), Catch::Contains("does not have the 5 bytes"));
-    CHECK_THAT(complaint([&] { WholeFile::continued(file, 11, checksum("0123456789x")); }), Catch::Contains("does not have the 11 bytes"));
+    CHECK_THAT(complaint([&] { WholeFile::continued(file, 5, checksum("01235")); }),
+               Catch::Contains("does not have the 5 bytes"));
+    CHECK_THAT(complaint([&] { WholeFile::continued(file, 11, checksum("0123456789x")); }),
+               Catch::Contains("does not have the 11 bytes"));
     CHECK(read_bytes(part) == "0123456789");
     {
         WholeFile second = WholeFile::continued(file, 5, checksum("01234"));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The raw bytes of a case: any weight intervals, extrema, rest positions and transforms that are finite. The toolkit's bounds are
-// compared with the exact side; a fault ends the run, and the input is the case.
+// The raw bytes of a case: any weight intervals, extrema, rest positions and transforms that are finite. The toolkit's
+// bounds are compared with the exact side; a fault ends the run, and the input is the case.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>

@@ -50,7 +50,8 @@ void check(const Influences& influences, std::size_t vertices)
     require(report.beyond_steps <= report.normalised && report.normalised + report.without_weight <= report.vertices);
 }
 
-// The first frame, the last and one between: finite, or refused as what overflows; and no clip too long to be chosen from.
+// The first frame, the last and one between: finite, or refused as what overflows; and no clip too long to be chosen
+// from.
 [[maybe_unused]] void sampled(const Character& character, const Character::Animation& animation)
 {
     try {
@@ -66,7 +67,8 @@ void check(const Influences& influences, std::size_t vertices)
         }
         require(animation.fault.empty());
     } catch (const InputError& error) {
-        require(std::string_view(error.what()).find('\n') == std::string_view::npos && std::string_view(error.what()).size() > 12);
+        require(std::string_view(error.what()).find('\n') == std::string_view::npos &&
+                std::string_view(error.what()).size() > 12);
     }
 }
 
@@ -81,7 +83,8 @@ void read([[maybe_unused]] std::string_view bytes)
 #elif defined(CINCH_FUZZ_stl)
     check(parse_stl(bytes, "fuzz.stl"));
 #elif defined(CINCH_FUZZ_gltf)
-    for (const Coverage coverage : {Coverage::partial, Coverage::whole}) { // what is refused as a whole is read in part first
+    for (const Coverage coverage :
+         {Coverage::partial, Coverage::whole}) { // what is refused as a whole is read in part first
         const Character character = parse_gltf(bytes, "fuzz.gltf", coverage);
         check(character.mesh);
         check(character.influences, character.mesh.vertices.size());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The bits of bounds, pairs and simulated frames on fixed scenes: golden.txt has a line for each, a name and a hash of what it is of. The
-// same on every target, with every compiler and optimisation. What changes bits on purpose writes the file anew:
-// CINCH_GOLDEN=write test_golden.
+// The bits of bounds, pairs and simulated frames on fixed scenes: golden.txt has a line for each, a name and a hash of
+// what it is of. The same on every target, with every compiler and optimisation. What changes bits on purpose writes
+// the file anew: CINCH_GOLDEN=write test_golden.
 #include <bit>
 #include <cstdlib>
 #include <fstream>
@@ -10,11 +10,11 @@
 
 #include <catch2/catch.hpp>
 
-#include "tests/support.hpp"
 #include "cinch/bounds.hpp"
 #include "cinch/collider.hpp"
-#include "toolkit/deform/kernel/targets.hpp"
 #include "cinch/refit.hpp"
+#include "tests/support.hpp"
+#include "toolkit/deform/kernel/targets.hpp"
 #include "toolkit/simulate/simulation.hpp"
 
 using namespace cinch;
@@ -86,7 +86,8 @@ struct Drawn {
     std::vector<std::vector<AffineMap>> frames;
 };
 
-// A bumpy grid over a cube's side, each vertex moved by its nearest nodes of a coarser grid, whose maps turn, shear, grow and shift at random.
+// A bumpy grid over a cube's side, each vertex moved by its nearest nodes of a coarser grid, whose maps turn, shear,
+// grow and shift at random.
 Drawn drawn(std::size_t side, std::size_t nodes_a_side, std::uint64_t seed, Vec3 at)
 {
     std::mt19937_64 random(seed);
@@ -96,7 +97,8 @@ Drawn drawn(std::size_t side, std::size_t nodes_a_side, std::uint64_t seed, Vec3
     const double step = 1.0 / static_cast<double>(std::bit_ceil(side));
     for (std::size_t i = 0; i <= side; ++i)
         for (std::size_t j = 0; j <= side; ++j)
-            mesh.vertices.push_back(at + Vec3(static_cast<double>(i) * step, static_cast<double>(j) * step, uniform(0.0625)));
+            mesh.vertices.push_back(
+                at + Vec3(static_cast<double>(i) * step, static_cast<double>(j) * step, uniform(0.0625)));
     for (std::size_t i = 0; i < side; ++i)
         for (std::size_t j = 0; j < side; ++j) {
             const auto v = static_cast<std::uint32_t>(i * (side + 1) + j), w = static_cast<std::uint32_t>(v + side + 1);
@@ -110,7 +112,8 @@ Drawn drawn(std::size_t side, std::size_t nodes_a_side, std::uint64_t seed, Vec3
     for (std::size_t i = 0; i <= side; ++i)
         for (std::size_t j = 0; j <= side; ++j) {
             const double x = static_cast<double>(i) * to_nodes, y = static_cast<double>(j) * to_nodes;
-            const auto a = std::min(static_cast<std::size_t>(x), nodes_a_side - 2), b = std::min(static_cast<std::size_t>(y), nodes_a_side - 2);
+            const auto a = std::min(static_cast<std::size_t>(x), nodes_a_side - 2),
+                       b = std::min(static_cast<std::size_t>(y), nodes_a_side - 2);
             const double u = x - static_cast<double>(a), v = y - static_cast<double>(b);
             const double weight[4] = {(1 - u) * (1 - v), (1 - u) * v, u * (1 - v), u * v};
             for (std::size_t c = 0; c < 4; ++c) {
@@ -155,7 +158,8 @@ void hash_bounds(Golden& golden, const std::string& scene, const Drawn& body)
                         for (const double s : supports)
                             hash.add(s);
                     }
-                    golden.check("bounds of " + scene + ", " + name_of(method) + ", " + std::string(name_of(precision)) + ", k = " + std::to_string(k) +
+                    golden.check("bounds of " + scene + ", " + name_of(method) + ", " +
+                                     std::string(name_of(precision)) + ", k = " + std::to_string(k) +
                                      (rounding == Rounding::plain ? ", unproven" : ""),
                                  hash);
                 }
@@ -163,14 +167,16 @@ void hash_bounds(Golden& golden, const std::string& scene, const Drawn& body)
         std::vector<double> supports(bvh.bvs.size() * 6);
         Hash hash;
         for (const auto& maps : body.frames) {
-            refit(bvh, body.surface, maps, {method, 6, Rounding::proven, Precision::float32, 1, RestShape::obb}, supports);
+            refit(bvh, body.surface, maps, {method, 6, Rounding::proven, Precision::float32, 1, RestShape::obb},
+                  supports);
             for (const double s : supports)
                 hash.add(s);
         }
         golden.check("bounds of " + scene + ", " + std::string(name_of(method)) + ", oriented boxes", hash);
     }
     Hash hash;
-    Refitter refitter(bvh, body.surface, {Method::best, 6, Rounding::proven, Precision::float32, 3, RestShape::aabb, true});
+    Refitter refitter(bvh, body.surface,
+                      {Method::best, 6, Rounding::proven, Precision::float32, 3, RestShape::aabb, true});
     std::vector<double> supports(bvh.bvs.size() * 6);
     for (const auto& maps : body.frames) {
         refitter(maps, supports);
@@ -205,7 +211,8 @@ TEST_CASE("bounds keep their bits")
 TEST_CASE("pairs keep their order")
 {
     Golden golden;
-    const Drawn bodies[] = {drawn(20, 5, 3, Vec3(0, 0, 0)), drawn(20, 5, 4, Vec3(0.25, 0.125, 0)), drawn(9, 4, 5, Vec3(-0.25, 0.25, 0.03125))};
+    const Drawn bodies[] = {drawn(20, 5, 3, Vec3(0, 0, 0)), drawn(20, 5, 4, Vec3(0.25, 0.125, 0)),
+                            drawn(9, 4, 5, Vec3(-0.25, 0.25, 0.03125))};
     on_every_target([&] {
         for (const Method method : {Method::best, Method::eq12, Method::vertices})
             for (const Precision precision : {Precision::float32, Precision::float64}) {

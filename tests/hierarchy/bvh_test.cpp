@@ -3,8 +3,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "tests/support.hpp"
 #include "cinch/bvh.hpp"
+#include "tests/support.hpp"
 #include "toolkit/surface/shapes.hpp"
 
 using namespace cinch;
@@ -33,7 +33,8 @@ TEST_CASE("levels are contiguous, children follow parents, halves are balanced")
         REQUIRE(bvh.level.front() == 0);
         REQUIRE(bvh.level.back() == bvh.bvs.size());
         const double triangles = static_cast<double>(e.surface.mesh.triangles.size());
-        CHECK(bvh.level.size() - 1 <= static_cast<std::size_t>(std::ceil(std::log2(triangles / static_cast<double>(leaf)))) + 1);
+        CHECK(bvh.level.size() - 1 <=
+              static_cast<std::size_t>(std::ceil(std::log2(triangles / static_cast<double>(leaf)))) + 1);
         for (std::size_t level = 0; level + 1 < bvh.level.size(); ++level)
             for (std::size_t i = bvh.level[level]; i < bvh.level[level + 1]; ++i) {
                 const Bv& bv = bvh.bvs[i];
@@ -42,7 +43,8 @@ TEST_CASE("levels are contiguous, children follow parents, halves are balanced")
                     continue;
                 CHECK(bv.first_child >= bvh.level[level + 1]);
                 CHECK(bv.first_child + 1 < bvh.level[level + 2]);
-                const auto left = bvh.bvs[bv.first_child].triangle_count, right = bvh.bvs[bv.first_child + 1].triangle_count;
+                const auto left = bvh.bvs[bv.first_child].triangle_count,
+                           right = bvh.bvs[bv.first_child + 1].triangle_count;
                 CHECK(left + right == bv.triangle_count);
                 CHECK((right == left || right == left + 1));
             }
@@ -115,7 +117,8 @@ TEST_CASE("intervals are the extremes over the vertices, 0 where a vertex is not
 TEST_CASE("a node that influences one child wholly and the other not at all has l = 0 above them")
 {
     // Siblings that share no vertex, as in meshes of several pieces.
-    DeformableSurface surface{{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {9, 0, 0}, {10, 0, 0}, {9, 1, 0}}, {{0, 1, 2}, {3, 4, 5}}}, {}};
+    DeformableSurface surface{
+        {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {9, 0, 0}, {10, 0, 0}, {9, 1, 0}}, {{0, 1, 2}, {3, 4, 5}}}, {}};
     surface.weights.node_count = 2;
     surface.weights.row = {0, 1, 2, 3, 4, 5, 6};
     surface.weights.node = {0, 0, 0, 1, 1, 1};

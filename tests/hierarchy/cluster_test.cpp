@@ -122,7 +122,8 @@ TEST_CASE("clusters keep to their limits without shared vertices, with repeated 
     check_mesh(alike);
     TriangleMesh again{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {}};
     for (std::uint32_t i = 0; i < 1000; ++i)
-        again.triangles.push_back({i % 3, (i / 3) % 4, (i / 7) % 4}); // the same few over and over, many of them segments and points
+        again.triangles.push_back(
+            {i % 3, (i / 3) % 4, (i / 7) % 4}); // the same few over and over, many of them segments and points
     check_mesh(again);
     TriangleMesh point{{{3, 3, 3}}, {}};
     point.triangles.assign(100, {0, 0, 0});
@@ -143,7 +144,8 @@ TEST_CASE("clusters of a closed surface are few: the triangles of most are as ma
     const TriangleMesh mesh = brain(5000);
     const DeformableSurface surface = rigid(mesh);
     const Bvh bvh = build_bvh(surface, ClusterSize{16, 16}, RestDetail::boxes);
-    const auto leaves = static_cast<std::size_t>(std::count_if(bvh.bvs.begin(), bvh.bvs.end(), [](const Bv& bv) { return bv.is_leaf(); }));
+    const auto leaves = static_cast<std::size_t>(
+        std::count_if(bvh.bvs.begin(), bvh.bvs.end(), [](const Bv& bv) { return bv.is_leaf(); }));
     CHECK(mesh.triangles.size() > 13 * leaves);
     CHECK(build_bvh(surface, ClusterSize{1, 3}, RestDetail::boxes).bvs.size() == 2 * mesh.triangles.size() - 1);
 }

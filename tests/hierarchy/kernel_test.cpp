@@ -3,8 +3,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "tests/collide/random_bodies.hpp"
 #include "cinch/bounds.hpp"
+#include "tests/collide/random_bodies.hpp"
 #include "toolkit/bounds/kernel/project_kernel.hpp"
 #include "toolkit/deform/kernel/targets.hpp"
 #include "toolkit/hierarchy/lazy_refit.hpp"
@@ -14,7 +14,10 @@ using namespace cinch::test;
 
 namespace {
 
-template <class T> void append(std::string& bytes, const T* p, std::size_t count) { bytes.append(reinterpret_cast<const char*>(p), count * sizeof(T)); }
+template <class T> void append(std::string& bytes, const T* p, std::size_t count)
+{
+    bytes.append(reinterpret_cast<const char*>(p), count * sizeof(T));
+}
 
 // What each target makes of it; the last argument is for names.
 template <class Make> void check_targets(const Make& make)
@@ -102,7 +105,8 @@ TEST_CASE("projected maps: the same bits on every target of this machine")
                     std::string bytes;
                     auto add = [&]<class T>(T, const Maps& maps, bool proven, const Vec3& origin) {
                         std::vector<T> records(nodes * 4 * projected_rows(static_cast<std::size_t>(kdop / 2)), T(7));
-                        const ProjectionReport report = project_nodes(std::span(maps).first(nodes), rest, axes_of(kdop), proven, origin, records.data());
+                        const ProjectionReport report = project_nodes(std::span(maps).first(nodes), rest, axes_of(kdop),
+                                                                      proven, origin, records.data());
                         append(bytes, records.data(), records.size());
                         append(bytes, &report.unbounded, 1);
                         append(bytes, &report.vertex_error, 1);

@@ -2,10 +2,10 @@
 // What is current contains what it must, at the moment when a query reads it: in exact integers.
 #include <catch2/catch.hpp>
 
-#include "tests/collide/clipper.hpp"
-#include "tests/collide/random_bodies.hpp"
 #include "cinch/bounds.hpp"
 #include "cinch/deform.hpp"
+#include "tests/collide/clipper.hpp"
+#include "tests/collide/random_bodies.hpp"
 #include "toolkit/hierarchy/lazy_refit.hpp"
 
 using namespace cinch;
@@ -65,7 +65,8 @@ struct Seen {
     std::size_t inner = 0, leaves = 0, slots = 0;
 };
 
-void check_dops(const DeformableSurface& surface, const Bvh& bvh, const LazyRefit& tree, int kdop, const Truth& truth, Seen& seen)
+void check_dops(const DeformableSurface& surface, const Bvh& bvh, const LazyRefit& tree, int kdop, const Truth& truth,
+                Seen& seen)
 {
     const auto axes = axes_of(kdop);
     const Point origin = exactly(tree.origin());
@@ -78,8 +79,10 @@ void check_dops(const DeformableSurface& surface, const Bvh& bvh, const LazyRefi
         for (std::size_t a = 0; a < axes.size(); ++a) {
             const float up = tree.dop(bv)[a], down = tree.dop(bv)[dop_side(kdop) + a];
             REQUIRE((up == up && down == down));
-            const bool open_up = up == std::numeric_limits<float>::infinity(), open_down = down == std::numeric_limits<float>::infinity();
-            const BigInt middle = along(axes[a], origin), most = open_up ? BigInt(0) : BigInt(thrice(static_cast<double>(up)) + middle),
+            const bool open_up = up == std::numeric_limits<float>::infinity(),
+                       open_down = down == std::numeric_limits<float>::infinity();
+            const BigInt middle = along(axes[a], origin),
+                         most = open_up ? BigInt(0) : BigInt(thrice(static_cast<double>(up)) + middle),
                          least = open_down ? BigInt(0) : BigInt(middle - thrice(static_cast<double>(down)));
             for (const std::uint32_t k : vertices)
                 for (const auto& all : truth.vertex) {
@@ -91,7 +94,8 @@ void check_dops(const DeformableSurface& surface, const Bvh& bvh, const LazyRefi
     REQUIRE(outside == 0);
 }
 
-void check_slots(const DeformableSurface& surface, const LazyRefit& tree, std::size_t bvs, const Truth& truth, Seen& seen)
+void check_slots(const DeformableSurface& surface, const LazyRefit& tree, std::size_t bvs, const Truth& truth,
+                 Seen& seen)
 {
     const Point origin = exactly(tree.origin());
     const std::size_t lanes = tree.lanes();
@@ -104,7 +108,8 @@ void check_slots(const DeformableSurface& surface, const LazyRefit& tree, std::s
         if (!(place.error < std::numeric_limits<float>::infinity()))
             continue;
         ++seen.slots;
-        const BigInt error = thrice(static_cast<double>(place.error)), difference = thrice(static_cast<double>(place.difference));
+        const BigInt error = thrice(static_cast<double>(place.error)),
+                     difference = thrice(static_cast<double>(place.difference));
         std::vector<std::array<Point, 2>> wrong; // by how much each corner is off, from either truth
         for (std::uint32_t t = 0; t < tree.leaf(bv).triangles; ++t)
             for (std::size_t c = 0; c < 3; ++c) {
@@ -115,14 +120,16 @@ void check_slots(const DeformableSurface& surface, const LazyRefit& tree, std::s
                 for (std::size_t which = 0; which < 2; ++which)
                     for (std::size_t r = 0; r < 3; ++r) {
                         BigInt& d = wrong.back()[which][r];
-                        d = truth.vertex[which][k][r] - origin[r] - thrice(static_cast<double>(place.reference[r])) - thrice(static_cast<double>(slot[r * lanes + lane]));
+                        d = truth.vertex[which][k][r] - origin[r] - thrice(static_cast<double>(place.reference[r])) -
+                            thrice(static_cast<double>(slot[r * lanes + lane]));
                         off += abs(d) > error;
                     }
             }
         for (std::size_t which = 0; which < 2; ++which)
             for (std::size_t r = 0; r < 3; ++r) {
                 const auto [least, most] =
-                    std::minmax_element(wrong.begin(), wrong.end(), [&](const auto& x, const auto& y) { return x[which][r] < y[which][r]; });
+                    std::minmax_element(wrong.begin(), wrong.end(),
+                                        [&](const auto& x, const auto& y) { return x[which][r] < y[which][r]; });
                 bent += (*most)[which][r] - (*least)[which][r] > difference;
             }
     }
@@ -130,9 +137,10 @@ void check_slots(const DeformableSurface& surface, const LazyRefit& tree, std::s
     REQUIRE(bent == 0);
 }
 
-// Frames that a query goes through by halves: each goes down a random way from what is current, with slots for all leaves that are.
-Seen go_through(Dice& dice, const DeformableSurface& surface, const std::vector<BodyFrame>& frames, const LazyOptions& options, ClusterSize size,
-                std::size_t* merged = nullptr)
+// Frames that a query goes through by halves: each goes down a random way from what is current, with slots for all
+// leaves that are.
+Seen go_through(Dice& dice, const DeformableSurface& surface, const std::vector<BodyFrame>& frames,
+                const LazyOptions& options, ClusterSize size, std::size_t* merged = nullptr)
 {
     const Bvh bvh = build_bvh(surface, size, RestDetail::inner);
     LazyRefit tree(bvh, surface, options);
@@ -147,7 +155,8 @@ Seen go_through(Dice& dice, const DeformableSurface& surface, const std::vector<
             *merged += tree.counts().merged;
         std::vector<std::uint32_t> reached{0};
         for (int round = 0; round < 10; ++round) {
-            for (std::size_t i = reached.size(); i-- > 0;) { // what a query may look at: children only of what it looked at
+            for (std::size_t i = reached.size();
+                 i-- > 0;) { // what a query may look at: children only of what it looked at
                 const std::uint32_t bv = reached[i], child = tree.link(bv).child;
                 if (tree.link(bv).is_leaf() || dice.below(3) == 0)
                     continue;
@@ -188,11 +197,15 @@ std::vector<LazyOptions> some_options()
     all[6].kdop = 14;
     return all;
 }
-ClusterSize size_of(const LazyOptions& options) { return options.lanes == 4 ? ClusterSize{1, 3} : ClusterSize{options.lanes, options.lanes}; }
+ClusterSize size_of(const LazyOptions& options)
+{
+    return options.lanes == 4 ? ClusterSize{1, 3} : ClusterSize{options.lanes, options.lanes};
+}
 
 } // namespace
 
-TEST_CASE("all that is current contains the exact and the computed vertices, merged or not, and slots are as near to them as they say")
+TEST_CASE("all that is current contains the exact and the computed vertices, merged or not, and slots are as near to "
+          "them as they say")
 {
     Dice dice(51);
     const DeformableSurface smooth = soft(brain(110), 12), rough = patchy(dice, ring_sphere(90), 16, 6);
@@ -212,7 +225,8 @@ TEST_CASE("all that is current contains the exact and the computed vertices, mer
         }
 }
 
-TEST_CASE("the same far from the origin, at rest or by transforms that cancel, and for scales up to where nothing is known")
+TEST_CASE(
+    "the same far from the origin, at rest or by transforms that cancel, and for scales up to where nothing is known")
 {
     Dice dice(52);
     for (const double far : {1e3, 1e6, 1e12})
@@ -223,12 +237,14 @@ TEST_CASE("the same far from the origin, at rest or by transforms that cancel, a
                 v = scale * v + away;
             const DeformableSurface surface = patchy(dice, mesh, 8, 4);
             const Eigen::Matrix3d r = dice.rotation();
-            const Maps here = around(dice, 8, r, -r * away, scale > 1e-3 ? 1e-13 : 0), there = around(dice, 8, r, far * dice.point(), 1e-3), still(8, identity_map);
+            const Maps here = around(dice, 8, r, -r * away, scale > 1e-3 ? 1e-13 : 0),
+                       there = around(dice, 8, r, far * dice.point(), 1e-3), still(8, identity_map);
             Maps apart = there; // the nodes' images far from each other
             for (AffineMap& map : apart)
                 map.m[dice.below(3)][3] += 1e5 * far * dice.symmetric();
             for (const LazyOptions& options : some_options())
-                CHECK(go_through(dice, surface, {{here}, {there}, {still}, {apart}, {here}}, options, size_of(options)).inner > 20);
+                CHECK(go_through(dice, surface, {{here}, {there}, {still}, {apart}, {here}}, options, size_of(options))
+                          .inner > 20);
         }
     for (const double scale : {1e-42, 1e-30, 1e-12, 1e12, 1e28, 1e34}) {
         TriangleMesh mesh = brain(50);
@@ -236,7 +252,8 @@ TEST_CASE("the same far from the origin, at rest or by transforms that cancel, a
         for (Vec3& v : mesh.vertices)
             v *= scale;
         const DeformableSurface at_rest = patchy(dice, mesh, 8, 4);
-        const Maps turned = around(dice, 8, dice.rotation(), scale * dice.point(), 0.1), scaled = around(dice, 8, scale * dice.rotation(), scale * dice.point(), 0);
+        const Maps turned = around(dice, 8, dice.rotation(), scale * dice.point(), 0.1),
+                   scaled = around(dice, 8, scale * dice.rotation(), scale * dice.point(), 0);
         for (const LazyOptions& options : some_options()) {
             go_through(dice, at_rest, {{turned}, {turned}}, options, size_of(options));
             go_through(dice, by_motion, {{scaled}, {scaled}}, options, size_of(options));

@@ -10,11 +10,11 @@
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
-#include "tests/support.hpp"
 #include "cinch/bounds.hpp"
-#include "toolkit/bounds/rounding.hpp"
 #include "cinch/deform.hpp"
 #include "cinch/refit.hpp"
+#include "tests/support.hpp"
+#include "toolkit/bounds/rounding.hpp"
 
 using namespace cinch;
 
@@ -22,7 +22,8 @@ namespace {
 
 std::vector<double> refitted(const Bvh& bvh, const test::Example& e, std::size_t frame, RefitOptions options)
 {
-    std::vector<double> supports(bvh.bvs.size() * static_cast<std::size_t>(options.kdop), std::numeric_limits<double>::quiet_NaN());
+    std::vector<double> supports(bvh.bvs.size() * static_cast<std::size_t>(options.kdop),
+                                 std::numeric_limits<double>::quiet_NaN());
     refit(bvh, e.surface, e.frames[frame], options, supports);
     return supports;
 }
@@ -43,9 +44,11 @@ std::vector<std::pair<Methods, Precision>> every_choice()
     return all;
 }
 
-template <class BvhArgument, class SurfaceArgument> constexpr bool refits = std::is_constructible_v<Refitter, BvhArgument, SurfaceArgument, RefitOptions>;
+template <class BvhArgument, class SurfaceArgument> constexpr bool refits =
+    std::is_constructible_v<Refitter, BvhArgument, SurfaceArgument, RefitOptions>;
 static_assert(refits<const Bvh&, const DeformableSurface&>);
-static_assert(!refits<Bvh, const DeformableSurface&> && !refits<const Bvh&, DeformableSurface> && !refits<Bvh, DeformableSurface>); // they would dangle
+static_assert(!refits<Bvh, const DeformableSurface&> && !refits<const Bvh&, DeformableSurface> &&
+              !refits<Bvh, DeformableSurface>); // they would dangle
 
 } // namespace
 
@@ -69,7 +72,8 @@ TEST_CASE("in doubles vertices ≤ limited ≤ eq12 ≤ convex, and every comput
                     s.push_back(refitted(bvh, e, frame, {method, k, Rounding::proven, precision}));
                 const auto support = refitted(bvh, e, frame, {Method::support, k, Rounding::proven, precision}),
                            linear = refitted(bvh, e, frame, {Method::linear, k, Rounding::proven, precision}),
-                           both = refitted(bvh, e, frame, {Method::support | Method::linear, k, Rounding::proven, precision});
+                           both = refitted(bvh, e, frame,
+                                           {Method::support | Method::linear, k, Rounding::proven, precision});
                 for (std::size_t i = 0; i < both.size(); ++i)
                     REQUIRE(both[i] == std::min(support[i], linear[i]));
             }
@@ -83,8 +87,11 @@ TEST_CASE("in doubles vertices ≤ limited ≤ eq12 ≤ convex, and every comput
                     for (std::uint32_t vertex : e.surface.mesh.triangles[bvh.triangle[bvh.bvs[bv].first_triangle + t]])
                         for (int axis = 0; axis < 3; ++axis)
                             for (const auto& supports : s) {
-                                REQUIRE(v[vertex][axis] <= supports[bv * static_cast<std::size_t>(k) + 2 * static_cast<std::size_t>(axis)]);
-                                REQUIRE(-v[vertex][axis] <= supports[bv * static_cast<std::size_t>(k) + 2 * static_cast<std::size_t>(axis) + 1]);
+                                REQUIRE(
+                                    v[vertex][axis] <=
+                                    supports[bv * static_cast<std::size_t>(k) + 2 * static_cast<std::size_t>(axis)]);
+                                REQUIRE(-v[vertex][axis] <= supports[bv * static_cast<std::size_t>(k) +
+                                                                     2 * static_cast<std::size_t>(axis) + 1]);
                             }
         }
 }
@@ -98,14 +105,17 @@ TEST_CASE("the same bits for 1, 2 and 7 threads")
         for (Methods method : methods) {
             std::vector<std::vector<double>> results;
             for (int threads : {1, 2, 7})
-                tbb::task_arena(threads).execute([&] { results.push_back(refitted(bvh, e, 2, {method, 14, Rounding::proven, precision})); });
+                tbb::task_arena(threads).execute([&] {
+                    results.push_back(refitted(bvh, e, 2, {method, 14, Rounding::proven, precision}));
+                });
             INFO(name_of(method));
             CHECK(results[0] == results[1]);
             CHECK(results[0] == results[2]);
         }
 }
 
-TEST_CASE("a map that is not finite in any one entry makes all bounds of the BVs that it influences infinite, changes no other, and is counted")
+TEST_CASE("a map that is not finite in any one entry makes all bounds of the BVs that it influences infinite, changes "
+          "no other, and is counted")
 {
     test::Example e = test::example(200, 20);
     const Bvh bvh = build_bvh(e.surface, 1);
@@ -154,7 +164,8 @@ TEST_CASE("a BV of more simulation nodes than float takes is bounded in doubles"
     std::vector<AffineMap> maps(nodes, identity_map);
     for (std::uint32_t j = 0; j < nodes; ++j)
         maps[j].m[j % 3][3] = j % 7;
-    for (const std::size_t leaf : {std::size_t{nodes}, std::size_t{5000}}) { // alone, and over others that float would take
+    for (const std::size_t leaf :
+         {std::size_t{nodes}, std::size_t{5000}}) { // alone, and over others that float would take
         const Bvh bvh = build_bvh(surface, leaf, RestDetail::boxes);
         REQUIRE(bvh.bvs[0].influence_count == nodes);
         std::vector<double> single(bvh.bvs.size() * 6), twice(single), truth(single);
@@ -181,14 +192,17 @@ TEST_CASE("the default is nowhere clearly looser than Eq. 12: by more than 1 % o
                         if (k == 26 && passes != 1)
                             continue;
                         std::vector<double> best(bvh.bvs.size() * static_cast<std::size_t>(k)), eq12(best);
-                        Refitter refitter(bvh, surface, {Method::best, k, Rounding::proven, precision, passes, RestShape::aabb, remember});
+                        Refitter refitter(
+                            bvh, surface,
+                            {Method::best, k, Rounding::proven, precision, passes, RestShape::aabb, remember});
                         for (int frame = 0; frame < 2; ++frame)
                             refitter(maps, best);
                         refit(bvh, surface, maps, {Method::eq12, k, Rounding::proven, precision}, eq12);
                         INFO(name_of(precision) << ", k " << k << ", " << passes << " passes, remembered " << remember);
                         for (std::size_t i = 0; i < best.size(); ++i) {
                             above += best[i] > eq12[i];
-                            REQUIRE(best[i] - eq12[i] <= 0.01 * (eq12[i] + eq12[i ^ 1]) + 8 * unit_roundoff * std::abs(eq12[i]));
+                            REQUIRE(best[i] - eq12[i] <=
+                                    0.01 * (eq12[i] + eq12[i ^ 1]) + 8 * unit_roundoff * std::abs(eq12[i]));
                         }
                     }
     };
@@ -201,7 +215,12 @@ TEST_CASE("the default is nowhere clearly looser than Eq. 12: by more than 1 % o
             const int kind = static_cast<int>(random() % 4);
             for (int r = 0; r < 3; ++r)
                 for (int s = 0; s < 4; ++s)
-                    map.m[r][s] = kind == 0 ? map.m[r][s] : kind == 1 ? uniform(1) : kind == 2 ? (s == (r + 1) % 3 ? -1 : s == 3 ? uniform(2) : 0) : (s == 3 ? uniform(9) : 0);
+                    map.m[r][s] = kind == 0   ? map.m[r][s]
+                                  : kind == 1 ? uniform(1)
+                                  : kind == 2 ? (s == (r + 1) % 3 ? -1
+                                                 : s == 3         ? uniform(2)
+                                                                  : 0)
+                                              : (s == 3 ? uniform(9) : 0);
         }
         never_looser(e.surface, scene % 2 ? 1 : 8, maps);
     }
@@ -231,7 +250,8 @@ TEST_CASE("wrong sizes and a changed rounding mode are refused")
     std::vector<double> supports(bvh.bvs.size() * 6);
     CHECK_THROWS_AS(refit(bvh, e.surface, e.frames[0], {Method::eq12, 8}, supports), std::invalid_argument);
     CHECK_THROWS_AS(refit(bvh, e.surface, e.frames[0], {Method::eq12, 14}, supports), std::invalid_argument);
-    CHECK_THROWS_AS(refit(bvh, e.surface, std::span(e.frames[0]).first(9), {Method::eq12, 6}, supports), std::invalid_argument);
+    CHECK_THROWS_AS(refit(bvh, e.surface, std::span(e.frames[0]).first(9), {Method::eq12, 6}, supports),
+                    std::invalid_argument);
     std::fesetround(FE_UPWARD);
     bool refused = false;
     try {
@@ -278,7 +298,8 @@ TEST_CASE("every pass of the dual evaluation tightens the bound, and a remembere
                 CHECK(width(s) <= width(looser));
             looser = s;
         }
-        Refitter remembering(bvh, e.surface, {method, 6, Rounding::proven, Precision::float64, 1, RestShape::aabb, true});
+        Refitter remembering(bvh, e.surface,
+                             {method, 6, Rounding::proven, Precision::float64, 1, RestShape::aabb, true});
         std::vector<double> s(looser.size());
         for (int frame = 0; frame < 24; ++frame) // one evaluation each
             remembering(e.frames[2], s);

@@ -9,13 +9,13 @@
 
 #include <catch2/catch.hpp>
 
-#include "tests/simulate/bodies.hpp"
-#include "tests/support.hpp"
 #include "cinch/collider.hpp"
 #include "cinch/deform.hpp"
+#include "cinch/refit.hpp"
+#include "tests/simulate/bodies.hpp"
+#include "tests/support.hpp"
 #include "toolkit/deform/motion.hpp"
 #include "toolkit/deform/sample_nodes.hpp"
-#include "cinch/refit.hpp"
 #include "toolkit/surface/character.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 #include "toolkit/surface/shapes.hpp"
@@ -53,14 +53,31 @@ struct World {
         return {
             {"parse_obj", [] { parse_obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "a.obj"); }},
             {"parse_off", [=] { parse_off(triangle, "a.off"); }},
-            {"parse_ply", [] { parse_ply("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n", "a.ply"); }},
-            {"parse_stl", [] { parse_stl("solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n", "a.stl"); }},
+            {"parse_ply",
+             [] {
+                 parse_ply("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty "
+                           "float z\nend_header\n0 0 0\n",
+                           "a.ply");
+             }},
+            {"parse_stl",
+             [] {
+                 parse_stl("solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 "
+                           "0\nendloop\nendfacet\nendsolid a\n",
+                           "a.stl");
+             }},
             {"parse_gltf", [] { parse_gltf("{}", "a.gltf"); }},
             {"parse_weights_text", [] { parse_weights_text("1 1\n1 0 1\n", "a", 1); }},
             {"parse_clips_text", [] { parse_clips_text("1\na 1 1\n0 1 0 0 0 0 1 0 0 0 0 1 0\n", "a", 1); }},
             {"named_shape", [] { named_shape("brain-3500"); }},
-            {"centre_and_scale", [this] { TriangleMesh mesh = e.surface.mesh; centre_and_scale(mesh, 1); }},
-            {"to_dyadic", [] { to_dyadic({1, {0, 1}, {0}, {1}}); }},
+            {"centre_and_scale",
+             [this] {
+                 TriangleMesh mesh = e.surface.mesh;
+                 centre_and_scale(mesh, 1);
+             }},
+            {"to_dyadic",
+             [] {
+                 to_dyadic({1, {0, 1}, {0}, {1}});
+             }},
             {"sample_nodes", [this] { sample_nodes(e.surface.mesh, 5, 0); }},
             {"kernel_weights", [this] { kernel_weights(e.surface.mesh, nodes, 2); }},
             {"scripted_clip", [this] { scripted_clip(*named_motion("mild"), nodes.position, 3); }},
@@ -68,11 +85,18 @@ struct World {
             {"evaluate", [this] { evaluate(e.surface.mesh.vertices, e.surface.weights, e.frames[1], positions); }},
             {"SurfaceEvaluator", [this] { evaluator(e.frames[1], positions); }},
             {"build_bvh", [this] { build_bvh(e.surface, 4); }},
-            {"build_bvh of clusters", [this] { build_bvh(e.surface, ClusterSize{16, 16}); }},
+            {"build_bvh of clusters",
+             [this] {
+                 build_bvh(e.surface, ClusterSize{16, 16});
+             }},
             {"Refitter", [this] { Refitter(bvh, e.surface, {}); }},
             {"a refit", [this] { refitter(e.frames[1], supports); }},
             {"Collider", [this] { Collider(LazyOptions{}).add(bvh, e.surface); }},
-            {"an update", [this] { const BodyFrame frame{e.frames[1]}; collider.update(std::span(&frame, 1)); }},
+            {"an update",
+             [this] {
+                 const BodyFrame frame{e.frames[1]};
+                 collider.update(std::span(&frame, 1));
+             }},
             {"discretise", [this] { discretise(nodes.position, std::vector<double>(nodes.position.size(), 1.0), {}); }},
         };
     }
@@ -84,7 +108,8 @@ TEST_CASE("a changed floating-point environment is refused by everything that ma
 {
     World world;
     world.collider.add(world.bvh, world.e.surface);
-    std::vector<std::pair<std::string, std::function<void()>>> changes = {{"rounding upward", [] { std::fesetround(FE_UPWARD); }}};
+    std::vector<std::pair<std::string, std::function<void()>>> changes = {
+        {"rounding upward", [] { std::fesetround(FE_UPWARD); }}};
 #if defined(__SSE2__)
     const unsigned int saved = _mm_getcsr();
     changes.emplace_back("results flushed to zero", [=] { _mm_setcsr(saved | 0x8000u); });

@@ -9,7 +9,8 @@
 namespace cinch::test {
 
 /// Nodes at the centres of the cells of a box about the origin; `jitter` moves them by so much of a cell.
-inline MeshlessBody lattice_body(const Vec3& size, int x, int y, int z, const MeshlessOptions& options = {}, double jitter = 0)
+inline MeshlessBody lattice_body(const Vec3& size, int x, int y, int z, const MeshlessOptions& options = {},
+                                 double jitter = 0)
 {
     std::mt19937_64 random(5);
     std::uniform_real_distribution<double> uniform(-jitter, jitter);
@@ -17,7 +18,8 @@ inline MeshlessBody lattice_body(const Vec3& size, int x, int y, int z, const Me
     for (int i = 0; i < x; ++i)
         for (int j = 0; j < y; ++j)
             for (int k = 0; k < z; ++k)
-                nodes.emplace_back(size[0] * ((i + 0.5 + uniform(random)) / x - 0.5), size[1] * ((j + 0.5 + uniform(random)) / y - 0.5),
+                nodes.emplace_back(size[0] * ((i + 0.5 + uniform(random)) / x - 0.5),
+                                   size[1] * ((j + 0.5 + uniform(random)) / y - 0.5),
                                    z == 1 && size[2] == 0 ? 0 : size[2] * ((k + 0.5 + uniform(random)) / z - 0.5));
     const double volume = size[0] * size[1] * (size[2] > 0 ? size[2] : 0.01);
     return discretise(nodes, std::vector<double>(nodes.size(), volume / static_cast<double>(nodes.size())), options);
@@ -35,7 +37,8 @@ inline Field moved(const MeshlessBody& body, const Mat3& a, const Vec3& b, doubl
 }
 
 /// The energy of one effect with the nodes at `x`.
-inline double energy_at(const Effect& effect, const MeshlessBody& body, const DeformableSurface* surface, const Field& x)
+inline double energy_at(const Effect& effect, const MeshlessBody& body, const DeformableSurface* surface,
+                        const Field& x)
 {
     MatrixField d, h, j;
     Field u = x;

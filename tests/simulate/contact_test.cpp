@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contact between bodies: what lies inside, forces that are a derivative and opposite, impacts that keep momentum, runs that repeat.
+// Contact between bodies: what lies inside, forces that are a derivative and opposite, impacts that keep momentum, runs
+// that repeat.
 #include <catch2/catch.hpp>
 
 #include <algorithm>
@@ -12,9 +13,9 @@
 
 #include "cinch/collider.hpp"
 #include "cinch/deform.hpp"
+#include "cinch/surface.hpp"
 #include "toolkit/simulate/find_inside.hpp"
 #include "toolkit/simulate/simulation.hpp"
-#include "cinch/surface.hpp"
 #include "toolkit/surface/shapes.hpp"
 
 #include "tests/simulate/bodies.hpp"
@@ -35,7 +36,8 @@ bool is_in_convex(const TriangleMesh& m, const Vec3& by, const Vec3& p)
 }
 
 // Of two meshes that move rigidly, by one simulation node each.
-std::vector<std::pair<std::uint32_t, std::uint32_t>> meeting(const TriangleMesh& a, const TriangleMesh& b, const Vec3& by)
+std::vector<std::pair<std::uint32_t, std::uint32_t>> meeting(const TriangleMesh& a, const TriangleMesh& b,
+                                                             const Vec3& by)
 {
     auto surface = [](const TriangleMesh& mesh) {
         Weights rigid;
@@ -63,7 +65,8 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> meeting(const TriangleMesh&
 
 json two_boxes()
 {
-    return json::parse(R"({"name": "impact", "duration": 0.5, "frame": 0.01, "integrator": {"method": "implicit", "step": 0.01},
+    return json::parse(
+        R"({"name": "impact", "duration": 0.5, "frame": 0.01, "integrator": {"method": "implicit", "step": 0.01},
         "bodies": [{"name": "a", "surface": "box", "box": [1, 1, 1], "cells": [8, 8, 8], "lattice": [3, 3, 3], "position": [-0.7, 0, 0], "velocity": [2, 0, 0]},
                    {"name": "b", "surface": "box", "box": [1, 1, 1], "cells": [7, 7, 7], "lattice": [3, 3, 3], "position": [0.7, 0.05, 0.03], "velocity": [-2, 0, 0]}],
         "effects": [{"effect": "elastic", "young": 3e5, "poisson": 0.3}, {"effect": "hourglass"}, {"effect": "contact", "stiffness": 1e7}]})");
@@ -94,11 +97,15 @@ double mass(const BodySimulation& s)
     return sum;
 }
 
-const BodyContact& contact_of(const BodySimulation& s) { return dynamic_cast<const BodyContact&>(*s.effects().back().effect); }
+const BodyContact& contact_of(const BodySimulation& s)
+{
+    return dynamic_cast<const BodyContact&>(*s.effects().back().effect);
+}
 
 } // namespace
 
-TEST_CASE("vertices inside a convex surface are those behind all its planes, deep ones too, and their closest points lie on it")
+TEST_CASE("vertices inside a convex surface are those behind all its planes, deep ones too, and their closest points "
+          "lie on it")
 {
     TriangleMesh cube = box(Vec3(1, 1, 1), {6, 6, 6}), ball = ring_sphere(600);
     for (Vec3& v : ball.vertices)
@@ -137,7 +144,8 @@ TEST_CASE("vertices inside a convex surface are those behind all its planes, dee
     CHECK(found > 200);
 }
 
-TEST_CASE("contact forces are the derivative of their energy, their product is that of the forces, and both bodies' add up to nothing")
+TEST_CASE("contact forces are the derivative of their energy, their product is that of the forces, and both bodies' "
+          "add up to nothing")
 {
     Simulation s = make(two_boxes());
     while (s.contacts()[0]->pairs() == 0)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Forces are the derivatives of energies, second derivatives those of forces, and effects that are not named are not there.
+// Forces are the derivatives of energies, second derivatives those of forces, and effects that are not named are not
+// there.
 #include <catch2/catch.hpp>
 
 #include <functional>
@@ -30,9 +31,19 @@ std::vector<std::uint32_t> some(const MeshlessBody& body)
 }
 
 const std::vector<Named> conservative = {
-    {"gravity", [](const MeshlessBody&) { return make_gravity({1, -2, 3}); }},
-    {"pulling force", [](const MeshlessBody& b) { return make_pulling(b, PullingForce{some(b), {3, 2, 1}, 0, 10, 0}); }},
-    {"pulling target", [](const MeshlessBody& b) { return make_pulling(b, PullingTarget{some(b), 70, [](std::size_t k, double) { return Vec3(0.1 * double(k), 0, 1); }}); }},
+    {"gravity",
+     [](const MeshlessBody&) {
+         return make_gravity({1, -2, 3});
+     }},
+    {"pulling force",
+     [](const MeshlessBody& b) {
+         return make_pulling(b, PullingForce{some(b), {3, 2, 1}, 0, 10, 0});
+     }},
+    {"pulling target",
+     [](const MeshlessBody& b) {
+         return make_pulling(
+             b, PullingTarget{some(b), 70, [](std::size_t k, double) { return Vec3(0.1 * double(k), 0, 1); }});
+     }},
     {"neo-Hookean", [](const MeshlessBody&) { return make_neo_hookean(1000, 0.3); }},
     {"neo-Hookean, nearly incompressible", [](const MeshlessBody&) { return make_neo_hookean(1000, 0.49); }},
     {"neo-Hookean, auxetic", [](const MeshlessBody&) { return make_neo_hookean(1000, -0.8); }},
@@ -40,7 +51,10 @@ const std::vector<Named> conservative = {
     {"StVK of the paper", [](const MeshlessBody&) { return make_stvk(1000, 0.3, true); }},
     {"volume", [](const MeshlessBody&) { return make_volume(500); }},
     {"hourglass", [](const MeshlessBody& b) { return make_hourglass(b, 0.7, 1000); }},
-    {"ground", [](const MeshlessBody&) { return make_ground({Vec3(0, 0, 0.1), Vec3(0.3, 0, 1), 900, 0, true}); }},
+    {"ground",
+     [](const MeshlessBody&) {
+         return make_ground({Vec3(0, 0, 0.1), Vec3(0.3, 0, 1), 900, 0, true});
+     }},
 };
 
 const std::vector<Named> dissipative = {
@@ -114,7 +128,8 @@ void check_forces(const MeshlessBody& body, const Named& named, bool remember)
 
 TEST_CASE("forces of every effect are the derivatives of its energy")
 {
-    const MeshlessBody solid = lattice_body({1, 0.8, 0.6}, 4, 3, 3, {}, 0.2), sheet = lattice_body({1, 1, 0}, 5, 5, 1), rope = lattice_body({1, 1e-9, 0}, 6, 1, 1);
+    const MeshlessBody solid = lattice_body({1, 0.8, 0.6}, 4, 3, 3, {}, 0.2), sheet = lattice_body({1, 1, 0}, 5, 5, 1),
+                       rope = lattice_body({1, 1e-9, 0}, 6, 1, 1);
     REQUIRE(solid.deficient.empty());
     REQUIRE(sheet.rank[12] == 2);
     REQUIRE(rope.rank[3] == 1);
@@ -129,14 +144,16 @@ TEST_CASE("forces of every effect are the derivatives of its energy")
 
 TEST_CASE("second derivatives of every effect are the derivatives of its forces")
 {
-    const MeshlessBody solid = lattice_body({1, 0.8, 0.6}, 4, 3, 3, {}, 0.2), sheet = lattice_body({1, 1, 0}, 5, 5, 1), rope = lattice_body({1, 1e-9, 0}, 6, 1, 1);
+    const MeshlessBody solid = lattice_body({1, 0.8, 0.6}, 4, 3, 3, {}, 0.2), sheet = lattice_body({1, 1, 0}, 5, 5, 1),
+                       rope = lattice_body({1, 1e-9, 0}, 6, 1, 1);
     for (const MeshlessBody* body : {&solid, &sheet, &rope}) {
         std::vector<Named> all = conservative;
         all.insert(all.end(), dissipative.begin(), dissipative.end());
         for (std::size_t k = 0; k < all.size(); ++k) {
             INFO(all[k].name << ", rank " << int(body->rank[0]));
             BodySimulation s = with(*body, all[k], k >= conservative.size());
-            const Field x = moved(*body, twisted(), {0.1, 0.2, -0.05}, 0.02, 7), p = moved(*body, Mat3::Zero(), Vec3::Zero(), 1, 11);
+            const Field x = moved(*body, twisted(), {0.1, 0.2, -0.05}, 0.02, 7),
+                        p = moved(*body, Mat3::Zero(), Vec3::Zero(), 1, 11);
             auto at_step = [&](double h) {
                 Field y = x;
                 whole(y) += h * whole(p);
@@ -151,14 +168,16 @@ TEST_CASE("second derivatives of every effect are the derivatives of its forces"
             CHECK(difference.norm() <= 1e-6 * (whole(product).norm() + whole(more).norm()));
             // Symmetric, as second derivatives are.
             const Field q = moved(*body, Mat3::Zero(), Vec3::Zero(), 1, 12);
-            CHECK(whole(q).dot(whole(product)) == Approx(whole(p).dot(whole(s.stiffness(q)))).epsilon(1e-9).margin(1e-9 * whole(product).norm()));
+            CHECK(whole(q).dot(whole(product)) ==
+                  Approx(whole(p).dot(whole(s.stiffness(q)))).epsilon(1e-9).margin(1e-9 * whole(product).norm()));
         }
     }
 }
 
 TEST_CASE("a nearly flat neighbourhood is at rest at rest, and under rotations")
 {
-    MeshlessBody body = lattice_body({1, 1, 1e-4}, 6, 6, 1, {}, 0.3); // out of plane by 3e-5: below the rank's threshold
+    MeshlessBody body =
+        lattice_body({1, 1, 1e-4}, 6, 6, 1, {}, 0.3); // out of plane by 3e-5: below the rank's threshold
     REQUIRE(body.rank[10] == 2);
     BodySimulation s(body, {});
     s.add(make_neo_hookean(1000, 0.3));
@@ -177,7 +196,8 @@ TEST_CASE("forces on a surface go to the nodes with their power")
     surface.weights.row = {0, 2};
     surface.weights.node = {3, 17};
     surface.weights.weight = {0.25, 0.75};
-    const Field x = moved(body, twisted(), {0.1, 0.2, 0.3}, 0.05, 3), dx = moved(body, Mat3::Zero(), Vec3::Zero(), 1, 4);
+    const Field x = moved(body, twisted(), {0.1, 0.2, 0.3}, 0.05, 3),
+                dx = moved(body, Mat3::Zero(), Vec3::Zero(), 1, 4);
     MatrixField g(12 * body.size()), dg = g, stress(g.size(), 0);
     gather_gradients(lists_of(body), x, g);
     gather_gradients(lists_of(body), dx, dg);
@@ -196,14 +216,18 @@ TEST_CASE("forces on a surface go to the nodes with their power")
     whole(y) += whole(dx);
     MatrixField gy(g.size());
     gather_gradients(lists_of(body), y, gy);
-    CHECK((point({body, &surface, reference, y, y, gy, gy, gy, no_plasticity}, 0) - point(c, 0) - point_change(c, 0, dx, dg)).norm() < 1e-12);
+    CHECK((point({body, &surface, reference, y, y, gy, gy, gy, no_plasticity}, 0) - point(c, 0) -
+           point_change(c, 0, dx, dg))
+              .norm() < 1e-12);
 }
 
 TEST_CASE("effects that are not added are not constructed, store nothing, and J is only computed where one needs it")
 {
     const MeshlessBody body = lattice_body({1, 1, 1}, 3, 3, 3);
-    const std::size_t before[] = {Effect::constructed("hourglass"), Effect::constructed("viscosity"), Effect::constructed("plasticity"), Effect::constructed("ground"),
-                                  Effect::constructed("damping"), Effect::constructed("volume"), Effect::constructed("pulling")};
+    const std::size_t before[] = {Effect::constructed("hourglass"),  Effect::constructed("viscosity"),
+                                  Effect::constructed("plasticity"), Effect::constructed("ground"),
+                                  Effect::constructed("damping"),    Effect::constructed("volume"),
+                                  Effect::constructed("pulling")};
     const std::size_t elastic = Effect::constructed("elastic"), gravity = Effect::constructed("gravity");
     BodySimulation s(body, {});
     s.add(make_gravity({0, 0, -1}));
@@ -218,8 +242,10 @@ TEST_CASE("effects that are not added are not constructed, store nothing, and J 
     CHECK(s.plastic_inverse().empty());
     CHECK(Effect::constructed("elastic") == elastic + 1);
     CHECK(Effect::constructed("gravity") == gravity + 1);
-    const std::size_t after[] = {Effect::constructed("hourglass"), Effect::constructed("viscosity"), Effect::constructed("plasticity"), Effect::constructed("ground"),
-                                 Effect::constructed("damping"), Effect::constructed("volume"), Effect::constructed("pulling")};
+    const std::size_t after[] = {Effect::constructed("hourglass"),  Effect::constructed("viscosity"),
+                                 Effect::constructed("plasticity"), Effect::constructed("ground"),
+                                 Effect::constructed("damping"),    Effect::constructed("volume"),
+                                 Effect::constructed("pulling")};
     for (std::size_t i = 0; i < std::size(before); ++i)
         CHECK(after[i] == before[i]);
 }

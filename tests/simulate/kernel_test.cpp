@@ -49,7 +49,8 @@ Results all_of(const MeshlessBody& body)
 
 TEST_CASE("simulation kernels: the same bits on every target")
 {
-    for (const MeshlessBody& body : {lattice_body({1, 1, 1}, 5, 4, 3, {}, 0.2), lattice_body({1, 1, 0}, 5, 5, 1), lattice_body({1, 1, 1}, 1, 1, 1)}) {
+    for (const MeshlessBody& body : {lattice_body({1, 1, 1}, 5, 4, 3, {}, 0.2), lattice_body({1, 1, 0}, 5, 5, 1),
+                                     lattice_body({1, 1, 1}, 1, 1, 1)}) {
         const Results best = all_of(body);
         REQUIRE(kernel_targets().size() >= 2);
         for (const std::string& target : kernel_targets()) {

@@ -68,7 +68,8 @@ void excite(BodySimulation& s, double stretch = 1.15)
 
 TEST_CASE("rigid motions create no force")
 {
-    const MeshlessBody solid = lattice_body({1, 1, 1}, 6, 6, 6, {}, 0.25), sheet = lattice_body({1, 1, 0}, 9, 9, 1, {}, 0.2), rope = lattice_body({1, 1e-9, 0}, 12, 1, 1);
+    const MeshlessBody solid = lattice_body({1, 1, 1}, 6, 6, 6, {}, 0.25),
+                       sheet = lattice_body({1, 1, 0}, 9, 9, 1, {}, 0.2), rope = lattice_body({1, 1e-9, 0}, 12, 1, 1);
     for (const MeshlessBody* body : {&solid, &sheet, &rope})
         for (const double angle : {0.0, 0.7, 3.1})
             for (const Vec3& shift : {Vec3(0, 0, 0), Vec3(10, -7, 3)}) {
@@ -169,7 +170,8 @@ TEST_CASE("a cantilever bends as Euler and Bernoulli say, at three resolutions, 
         for (const std::uint32_t i : tip)
             down += (body.rest[i][2] - at(s.positions(), i)[2]) / static_cast<double>(tip.size());
         const double inertia = std::pow(height, 4) / 12, load = 1000 * gravity * height * height, x = length - cell / 2;
-        ratio.push_back(down / (load * x * x * (6 * length * length - 4 * length * x + x * x) / (24 * young * inertia)));
+        ratio.push_back(down /
+                        (load * x * x * (6 * length * length - 4 * length * x + x * x) / (24 * young * inertia)));
         CAPTURE(m, ratio.back());
         CHECK(ratio.back() > 0.9);
         CHECK(ratio.back() < 1.1);

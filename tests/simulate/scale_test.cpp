@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A motion does not depend on the units in which a scene is written, nor on where it is, nor on how stiff what moves freely is.
+// A motion does not depend on the units in which a scene is written, nor on where it is, nor on how stiff what moves
+// freely is.
 #include <catch2/catch.hpp>
 
 #include <Eigen/Geometry>
@@ -42,12 +43,31 @@ json in_units(json scene, const Units& u)
     scale(scene, {{"duration", t}, {"frame", t}});
     scale(scene["integrator"], {{"step", t}});
     for (json& body : scene["bodies"])
-        scale(body, {{"box", l}, {"size", l}, {"thickness", l}, {"position", l}, {"velocity", l / t}, {"spin", 1 / t}, {"density", m / l / l / l}});
+        scale(body, {{"box", l},
+                     {"size", l},
+                     {"thickness", l},
+                     {"position", l},
+                     {"velocity", l / t},
+                     {"spin", 1 / t},
+                     {"density", m / l / l / l}});
     for (json& effect : scene["effects"]) {
         const std::string name = effect["effect"];
         const double stiffness = name == "volume" ? pressure : name == "contact" ? pressure / l : m / t / t;
-        scale(effect, {{"acceleration", l / t / t}, {"young", pressure}, {"viscosity", pressure * t}, {"rate", 1 / t}, {"stiffness", stiffness}, {"point", l},
-                       {"force", m * l / t / t}, {"period", t}, {"start", t}, {"end", t}, {"ramp", t}, {"offset", l}, {"creep", 1 / t}, {"centre", l}, {"velocity", l / t}});
+        scale(effect, {{"acceleration", l / t / t},
+                       {"young", pressure},
+                       {"viscosity", pressure * t},
+                       {"rate", 1 / t},
+                       {"stiffness", stiffness},
+                       {"point", l},
+                       {"force", m * l / t / t},
+                       {"period", t},
+                       {"start", t},
+                       {"end", t},
+                       {"ramp", t},
+                       {"offset", l},
+                       {"creep", 1 / t},
+                       {"centre", l},
+                       {"velocity", l / t}});
         if (effect.contains("nodes"))
             scale(effect["nodes"], {{"box", l}});
     }
@@ -56,12 +76,14 @@ json in_units(json scene, const Units& u)
 
 json box_body(const char* name, const json& extra)
 {
-    json body = {{"name", name}, {"surface", "box"}, {"box", {0.75, 0.5, 0.5}}, {"cells", {6, 4, 4}}, {"lattice", {4, 3, 3}}, {"density", 1000}};
+    json body = {{"name", name},       {"surface", "box"},     {"box", {0.75, 0.5, 0.5}},
+                 {"cells", {6, 4, 4}}, {"lattice", {4, 3, 3}}, {"density", 1000}};
     body.update(extra);
     return body;
 }
 
-// A pair that falls on the ground, slides and meets; a bar that is held, pulled and flows; a sheet in a spin; a single node.
+// A pair that falls on the ground, slides and meets; a bar that is held, pulled and flows; a sheet in a spin; a single
+// node.
 json everything(const std::string& method)
 {
     json integrator = {{"method", method}, {"step", 0.015625}};
@@ -72,10 +94,28 @@ json everything(const std::string& method)
             {"integrator", integrator},
             {"bodies",
              {box_body("low", {{"position", {0, 0, 0.3125}}, {"velocity", {0.5, 0, -1}}}),
-              box_body("high", {{"position", {0.125, 0.0625, 0.9375}}, {"velocity", {0, 0, -2}}, {"spin", {0.5, 1, 0}}, {"rotation", {{"axis", {1, 2, 3}}, {"degrees", 30}}}}),
+              box_body("high", {{"position", {0.125, 0.0625, 0.9375}},
+                                {"velocity", {0, 0, -2}},
+                                {"spin", {0.5, 1, 0}},
+                                {"rotation", {{"axis", {1, 2, 3}}, {"degrees", 30}}}}),
               box_body("bar", {{"position", {4, 0, 4}}}),
-              {{"name", "sheet"}, {"surface", "sheet"}, {"box", {1, 1, 0}}, {"cells", {4, 4, 1}}, {"lattice", {5, 5, 1}}, {"thickness", 0.03125}, {"density", 1000}, {"position", {0, 8, 4}}, {"spin", {1, 2, 3}}},
-              {{"name", "one"}, {"surface", "box"}, {"box", {0.5, 0.5, 0.5}}, {"cells", {1, 1, 1}}, {"lattice", {1, 1, 1}}, {"density", 1000}, {"position", {-8, 0, 0.25}}, {"velocity", {1, 0, 0}}}}},
+              {{"name", "sheet"},
+               {"surface", "sheet"},
+               {"box", {1, 1, 0}},
+               {"cells", {4, 4, 1}},
+               {"lattice", {5, 5, 1}},
+               {"thickness", 0.03125},
+               {"density", 1000},
+               {"position", {0, 8, 4}},
+               {"spin", {1, 2, 3}}},
+              {{"name", "one"},
+               {"surface", "box"},
+               {"box", {0.5, 0.5, 0.5}},
+               {"cells", {1, 1, 1}},
+               {"lattice", {1, 1, 1}},
+               {"density", 1000},
+               {"position", {-8, 0, 0.25}},
+               {"velocity", {1, 0, 0}}}}},
             {"effects",
              {{{"effect", "gravity"}, {"acceleration", {0, 0, -9.81}}},
               {{"effect", "elastic"}, {"young", 1e5}},
@@ -87,8 +127,17 @@ json everything(const std::string& method)
               {{"effect", "contact"}, {"stiffness", 3e6}, {"bodies", {"low", "high"}}},
               {{"effect", "plasticity"}, {"bodies", {"bar"}}, {"yield", 0.02}, {"creep", 20}},
               {{"effect", "pinned"}, {"bodies", {"bar"}}, {"nodes", {{"box", {{-1, -1, -1}, {-0.25, 1, 1}}}}}},
-              {{"effect", "pulling"}, {"bodies", {"bar"}}, {"nodes", {{"box", {{0.25, -1, -1}, {1, 1, 1}}}}}, {"force", {900, 0, 0}}, {"period", 1}},
-              {{"effect", "pulling"}, {"bodies", {"sheet"}}, {"nodes", {{"box", {{-1, -1, -1}, {-0.25, 1, 1}}}}}, {"stiffness", 500}, {"offset", {0, 0, 0.5}}, {"ramp", 0.25}}}}};
+              {{"effect", "pulling"},
+               {"bodies", {"bar"}},
+               {"nodes", {{"box", {{0.25, -1, -1}, {1, 1, 1}}}}},
+               {"force", {900, 0, 0}},
+               {"period", 1}},
+              {{"effect", "pulling"},
+               {"bodies", {"sheet"}},
+               {"nodes", {{"box", {{-1, -1, -1}, {-0.25, 1, 1}}}}},
+               {"stiffness", 500},
+               {"offset", {0, 0, 0.5}},
+               {"ramp", 0.25}}}}};
 }
 
 struct Motion {
@@ -160,7 +209,9 @@ TEST_CASE("scenes in units that are powers of two give the same bits, whatever a
         const Motion one = run(scene);
         REQUIRE(one.failure == "");
         const double big = 0x1p30, small = 0x1p-30;
-        for (const Units& u : {Units{big, 1, 1}, Units{small, 1, 1}, Units{1, big, 1}, Units{1, small, 1}, Units{1, 1, big}, Units{1, 1, small}, Units{small, big, small}, Units{big, small, small}}) {
+        for (const Units& u :
+             {Units{big, 1, 1}, Units{small, 1, 1}, Units{1, big, 1}, Units{1, small, 1}, Units{1, 1, big},
+              Units{1, 1, small}, Units{small, big, small}, Units{big, small, small}}) {
             INFO(method << ": length " << u.length << ", time " << u.time << ", mass " << u.mass);
             const Motion other = run(in_units(scene, u));
             REQUIRE(other.failure == "");
@@ -175,7 +226,8 @@ TEST_CASE("scenes scaled by 1e-9 to 1e9 in length, time and mass give the same m
         const json scene = everything(method);
         const Motion one = run(scene);
         REQUIRE(one.failure == "");
-        for (const Units& u : {Units{1e9, 1, 1}, Units{1e-9, 1, 1}, Units{1, 1e9, 1}, Units{1, 1e-9, 1}, Units{1, 1, 1e9}, Units{1, 1, 1e-9}, Units{1e-9, 1e-9, 1e-9}, Units{1e9, 1e9, 1e9},
+        for (const Units& u : {Units{1e9, 1, 1}, Units{1e-9, 1, 1}, Units{1, 1e9, 1}, Units{1, 1e-9, 1},
+                               Units{1, 1, 1e9}, Units{1, 1, 1e-9}, Units{1e-9, 1e-9, 1e-9}, Units{1e9, 1e9, 1e9},
                                Units{1e-9, 1e9, 1e-9}, Units{1e3, 1e-5, 1e7}}) {
             INFO(method << ": length " << u.length << ", time " << u.time << ", mass " << u.mass);
             const Motion other = run(in_units(scene, u));
@@ -218,7 +270,8 @@ TEST_CASE("a body spins as it began, however small, stiff or flat it is")
                     failure = s.advance(1.0 / 60, steps(1.0 / 480)).failure;
                 REQUIRE(failure == "");
                 CHECK(s.kinetic() > 0.8 * start); // implicit Euler takes a share of ω Δt with every radian
-                const Vec3 was = body.rest[0].cwiseProduct(Vec3(1, 1, 0)), is = Vec3(at(s.positions(), 0)).cwiseProduct(Vec3(1, 1, 0));
+                const Vec3 was = body.rest[0].cwiseProduct(Vec3(1, 1, 0)),
+                           is = Vec3(at(s.positions(), 0)).cwiseProduct(Vec3(1, 1, 0));
                 CHECK(is.norm() / was.norm() == Approx(1).epsilon(0.02));
                 CHECK(std::abs(was.dot(is)) / was.squaredNorm() < 0.15); // a quarter of a turn
             }
@@ -231,7 +284,9 @@ TEST_CASE("a body moves far away as it does here")
                        {"integrator", {{"method", "implicit"}, {"tolerance", 1e-9}}},
                        {"bodies",
                         {box_body("low", {{"position", {0, 0, 0.3125}}, {"velocity", {0.5, 0, -1}}}),
-                         box_body("high", {{"position", {0.125, 0.0625, 0.9375}}, {"velocity", {0, 0, -2}}, {"rotation", {{"axis", {1, 2, 3}}, {"degrees", 30}}}}),
+                         box_body("high", {{"position", {0.125, 0.0625, 0.9375}},
+                                           {"velocity", {0, 0, -2}},
+                                           {"rotation", {{"axis", {1, 2, 3}}, {"degrees", 30}}}}),
                          box_body("bar", {{"position", {4, 0, 4}}})}},
                        {"effects",
                         {{{"effect", "gravity"}},
@@ -240,8 +295,17 @@ TEST_CASE("a body moves far away as it does here")
                          {{"effect", "damping"}, {"rate", 0.5}},
                          {{"effect", "ground"}, {"stiffness", 1e6}, {"friction", 0.5}, {"point", {0, 0, 0}}},
                          {{"effect", "contact"}, {"stiffness", 3e6}, {"bodies", {"low", "high"}}},
-                         {{"effect", "scripted"}, {"bodies", {"bar"}}, {"nodes", {{"box", {{-1, -1, -1}, {-0.25, 1, 1}}}}}, {"axis", {1, 0, 0}}, {"centre", {4, 0, 4}}, {"rate", 3}},
-                         {{"effect", "pulling"}, {"bodies", {"bar"}}, {"nodes", {{"box", {{0.25, -1, -1}, {1, 1, 1}}}}}, {"stiffness", 2000}, {"offset", {0, 0, 0.5}}}}}};
+                         {{"effect", "scripted"},
+                          {"bodies", {"bar"}},
+                          {"nodes", {{"box", {{-1, -1, -1}, {-0.25, 1, 1}}}}},
+                          {"axis", {1, 0, 0}},
+                          {"centre", {4, 0, 4}},
+                          {"rate", 3}},
+                         {{"effect", "pulling"},
+                          {"bodies", {"bar"}},
+                          {"nodes", {{"box", {{0.25, -1, -1}, {1, 1, 1}}}}},
+                          {"stiffness", 2000},
+                          {"offset", {0, 0, 0.5}}}}}};
     const Vec3 far(0x1p40, -0x1p40, 0x1p39); // about 1e12 m: doubles are 1e-4 m apart there
     json there = here;
     for (json& body : there["bodies"])
@@ -275,8 +339,8 @@ TEST_CASE("a body moves far away as it does here")
 
 TEST_CASE("what rounding leaves is a failure, or within the tolerance")
 {
-    // Ends that are turned by their places in the world, and steel a million times too stiff: a rounding of the places strains it by more
-    // than gravity does.
+    // Ends that are turned by their places in the world, and steel a million times too stiff: a rounding of the places
+    // strains it by more than gravity does.
     const MeshlessBody body = lattice_body({1, 0.3, 0.3}, 8, 3, 3);
     for (const double young : {1e5, 1e8, 1e11, 1e14, 1e17, 1e20}) {
         BodySimulation s = elastic(body, young);
@@ -303,7 +367,8 @@ TEST_CASE("what rounding leaves is a failure, or within the tolerance")
             CHECK(r.failure.find("rounding: accelerations are off by ") == 0);
             CHECK((s.positions() == x));
         }
-        UNSCOPED_INFO(young << ": " << r.failure << " " << r.residual << " of " << r.acceleration << " " << r.at_rounding);
+        UNSCOPED_INFO(young << ": " << r.failure << " " << r.residual << " of " << r.acceleration << " "
+                            << r.at_rounding);
         if (r.failure.empty() && !r.at_rounding)
             CHECK(r.residual <= 1e-5 * r.acceleration);
     }
@@ -311,7 +376,8 @@ TEST_CASE("what rounding leaves is a failure, or within the tolerance")
 
 TEST_CASE("a body at rest stays there, strained or not, also where nothing but rounding is left of its forces")
 {
-    const MeshlessBody solid = lattice_body({1, 0.3, 0.3}, 8, 3, 3), sheet = lattice_body({1, 1, 0}, 5, 5, 1), rope = lattice_body({1, 1e-9, 0}, 6, 1, 1);
+    const MeshlessBody solid = lattice_body({1, 0.3, 0.3}, 8, 3, 3), sheet = lattice_body({1, 1, 0}, 5, 5, 1),
+                       rope = lattice_body({1, 1e-9, 0}, 6, 1, 1);
     const Mat3 turned = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
     for (const MeshlessBody* body : {&solid, &sheet, &rope})
         for (const double young : {1e4, 1e9, 1e14}) {

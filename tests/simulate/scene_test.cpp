@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scenes: what is wrong is named by its path; what is right runs, the same for any number of threads, and continues from a checkpoint.
+// Scenes: what is wrong is named by its path; what is right runs, the same for any number of threads, and continues
+// from a checkpoint.
 #include <catch2/catch.hpp>
 
 #include <sstream>
@@ -7,9 +8,9 @@
 #include <nlohmann/json.hpp>
 #include <tbb/global_control.h>
 
+#include "cinch/surface.hpp"
 #include "toolkit/simulate/frame_file.hpp"
 #include "toolkit/simulate/simulation.hpp"
-#include "cinch/surface.hpp"
 
 #include "tests/support.hpp"
 
@@ -72,18 +73,23 @@ TEST_CASE("what is wrong in a scene is named by its path")
         {"/effects/1/poisson", -1, "/effects/1/poisson: expected a number above -1"},
         {"/effects/1/model", "rubber", "/effects/1/model: 'rubber' is unknown"},
         {"/effects/0/acceleration", json::array({0, 1}), "/effects/0/acceleration: expected an array of 3 numbers"},
-        {"/effects/0/acceleration", json::array({0, 1, "x"}), "/effects/0/acceleration/2: expected a number, found \"x\""},
+        {"/effects/0/acceleration", json::array({0, 1, "x"}),
+         "/effects/0/acceleration/2: expected a number, found \"x\""},
         {"/effects/5/bodies", "bar", "/effects/5/bodies: expected names of bodies"},
         {"/effects/5/bodies/0", "bra", "/effects/5/bodies/0: there is no body 'bra'"},
         {"/effects/7/nodes/count", 0, "/effects/7/nodes/count: expected a whole number from 1"},
-        {"/effects/8/nodes", json::parse(R"({"box": [[5, 5, 5], [6, 6, 6]]})"), "/effects/8/nodes: selects no simulation node of body 'bar'"},
-        {"/effects/8/nodes", json::parse(R"({"index": [3, 99]})"), "/effects/8/nodes/index: body 'bar' has simulation nodes 0 to 23, not 99"},
+        {"/effects/8/nodes", json::parse(R"({"box": [[5, 5, 5], [6, 6, 6]]})"),
+         "/effects/8/nodes: selects no simulation node of body 'bar'"},
+        {"/effects/8/nodes", json::parse(R"({"index": [3, 99]})"),
+         "/effects/8/nodes/index: body 'bar' has simulation nodes 0 to 23, not 99"},
         {"/effects/8/nodes", json::parse(R"({"index": [-1]})"), "/effects/8/nodes/index/0: expected a whole number"},
         {"/effects/8/nodes", "some", "/effects/8/nodes: expected an object"},
         {"/effects/8/bodies", nullptr, "/effects/8/nodes: selects no simulation node of body 'ball'"},
-        {"/effects/9", json::parse(R"({"effect": "pinned", "bodies": ["bar"]})"), "/effects/9: simulation node 0 of body 'bar' is pinned or scripted already"},
+        {"/effects/9", json::parse(R"({"effect": "pinned", "bodies": ["bar"]})"),
+         "/effects/9: simulation node 0 of body 'bar' is pinned or scripted already"},
         {"/effects/9/clip", true, "/effects/9/axis: is unknown"},
-        {"/effects/9", json::parse(R"({"effect": "scripted", "clip": true})"), "'clip' needs a body whose surface is an animated character"},
+        {"/effects/9", json::parse(R"({"effect": "scripted", "clip": true})"),
+         "'clip' needs a body whose surface is an animated character"},
         {"/effects/9/axis", json::array({0, 0, 0}), "/effects/9/axis: must not be 0"},
         {"/effects/6/stiffness", -1, "/effects/6/stiffness: expected a number >= 0"},
         {"/bodies/0/density", 0, "/bodies/0/density: expected a number > 0"},
@@ -134,7 +140,8 @@ TEST_CASE("what is wrong in a scene is named by its path")
     };
     CHECK(text_complaint("{\n\"a\": ,\n}") == "s.json:2: is no JSON from here on");
     CHECK(text_complaint("") == "s.json:1: is no JSON from here on");
-    CHECK(text_complaint("{\"duration\": " + std::string(200000, '[') + std::string(200000, ']') + "}").find("nested more than 32 deep") != std::string::npos);
+    CHECK(text_complaint("{\"duration\": " + std::string(200000, '[') + std::string(200000, ']') + "}")
+              .find("nested more than 32 deep") != std::string::npos);
     CHECK(text_complaint(R"({"duration": 1, "duration": 2})").find("'duration' stands twice") != std::string::npos);
     CHECK(text_complaint("{\"duration\": 1, \"name\": \"\xff\"}").find("is no JSON") != std::string::npos);
     CHECK(text_complaint("[1]").find("expected an object") != std::string::npos);
@@ -197,5 +204,6 @@ TEST_CASE("frames are read back as they were written, and damage is seen")
     CHECK(cut.cut_off);
     bytes[layout.header_bytes() + 100] ^= 1;
     CHECK_THROWS_WITH(read_frames(folder.write("c", bytes)), Catch::Contains("frame 0 was changed"));
-    CHECK_THROWS_WITH(read_frames(folder.write("d", "hello, this is no such file at all")), Catch::Contains("is no file of frames"));
+    CHECK_THROWS_WITH(read_frames(folder.write("d", "hello, this is no such file at all")),
+                      Catch::Contains("is no file of frames"));
 }

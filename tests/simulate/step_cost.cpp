@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Prints the time of one step, in ns, of a body with gravity and elasticity only. Compiled twice: alone, so that no other effect is in the
-// program, and with everything that a scene can name (EVERYTHING).
+// Prints the time of one step, in ns, of a body with gravity and elasticity only. Compiled twice: alone, so that no
+// other effect is in the program, and with everything that a scene can name (EVERYTHING).
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -25,10 +25,11 @@ int main()
         std::snprintf(text, sizeof text, "%s[%.17g,%.17g,%.17g]", places.empty() ? "" : ",", p[0], p[1], p[2]);
         places += text;
     }
-    Simulation simulation(parse_scene("{\"duration\":1,\"bodies\":[{\"surface\":\"box\",\"box\":[1,1,1],\"cells\":[1,1,1],\"places\":[" + places +
-                                          "]}],\"effects\":[{\"effect\":\"gravity\"},{\"effect\":\"elastic\",\"young\":1e4}]}",
-                                      "scene", "."),
-                          "scene");
+    Simulation simulation(
+        parse_scene("{\"duration\":1,\"bodies\":[{\"surface\":\"box\",\"box\":[1,1,1],\"cells\":[1,1,1],\"places\":[" +
+                        places + "]}],\"effects\":[{\"effect\":\"gravity\"},{\"effect\":\"elastic\",\"young\":1e4}]}",
+                    "scene", "."),
+        "scene");
     BodySimulation& s = simulation.bodies()[0].simulation;
     if (Effect::constructed("gravity") != 1 || Effect::constructed("elastic") != 1)
         return 1;

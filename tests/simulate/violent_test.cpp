@@ -66,7 +66,8 @@ TEST_CASE("the explicit integrator survives spins that tear the material")
         Vec3 omega;
         double young, poisson, volume;
     };
-    for (const Case& c : {Case{{100, 20, 3}, 1e3, 0.45, 1e7}, Case{{300, 1000, 0}, 1e5, 0.3, 0}, Case{{30, 0, 0}, 1e4, 0.3, 0}}) {
+    for (const Case& c :
+         {Case{{100, 20, 3}, 1e3, 0.45, 1e7}, Case{{300, 1000, 0}, 1e5, 0.3, 0}, Case{{30, 0, 0}, 1e4, 0.3, 0}}) {
         BodySimulation s = block(body, c.young, c.poisson);
         if (c.volume > 0)
             s.add(make_volume(c.volume));
@@ -89,7 +90,8 @@ TEST_CASE("the explicit integrator takes steps that the viscosity allows")
         s.add(make_mass_damping(viscosity * 1e-2));
         if (viscosity > 0)
             s.add(make_viscosity(viscosity));
-        s.place(moved(s.body(), Vec3(1.2, 0.9, 1).asDiagonal(), Vec3::Zero(), 0, 1), moved(s.body(), Mat3::Zero(), Vec3::Zero(), 0.5, 2));
+        s.place(moved(s.body(), Vec3(1.2, 0.9, 1).asDiagonal(), Vec3::Zero(), 0, 1),
+                moved(s.body(), Mat3::Zero(), Vec3::Zero(), 0.5, 2));
         const double start = s.kinetic() + s.potential();
         for (int frame = 0; frame < 6; ++frame) {
             const StepReport r = s.advance(1.0 / 60, steps(Integration::Method::explicit_euler, 1.0 / 60));
@@ -107,7 +109,8 @@ TEST_CASE("implicit steps make no energy, however a body spins, collapses or is 
         Vec3 omega;
         double poisson;
     };
-    for (const Case& c : {Case{2, 2, 1, {50, 10, 0}, 0.3}, Case{3, 3, 1, {0, 0, 40}, 0.45}, Case{3, 3, 3, {80, 3, 0}, 0.3}, Case{2, 1, 1, {0, 20, 5}, 0.3}}) {
+    for (const Case& c : {Case{2, 2, 1, {50, 10, 0}, 0.3}, Case{3, 3, 1, {0, 0, 40}, 0.45},
+                          Case{3, 3, 3, {80, 3, 0}, 0.3}, Case{2, 1, 1, {0, 20, 5}, 0.3}}) {
         const MeshlessBody body = lattice_body({1, 1, 1}, c.x, c.y, c.z);
         BodySimulation s = block(body, 1e3, c.poisson);
         spin(s, c.omega);
@@ -142,7 +145,8 @@ TEST_CASE("implicit friction: impacts are solved, a slope holds what it should, 
         for (int frame = 0; frame < 60; ++frame)
             REQUIRE(s.advance(1.0 / 60, steps(Integration::Method::implicit_euler, 1.0 / 60)).failure == "");
     }
-    // A slope of tangent 0.3 under friction 0.5: a creep of about the speed below which friction fades (1 mm/s), whatever the step.
+    // A slope of tangent 0.3 under friction 0.5: a creep of about the speed below which friction fades (1 mm/s),
+    // whatever the step.
     for (const double step : {1.0 / 60, 1.0 / 1000}) {
         BodySimulation s = block(lattice_body({0.6, 0.4, 0.2}, 6, 4, 2), 1e6);
         s.add(make_gravity({-10 * std::sin(std::atan(0.3)), 0, -10 * std::cos(std::atan(0.3))}));
@@ -169,7 +173,8 @@ TEST_CASE("what cannot be is reported, not done")
     }
     {
         BodySimulation s = block(body, 1e4);
-        CHECK(s.advance(1, steps(Integration::Method::implicit_euler, 1e-12)).failure.find("a million steps") != std::string::npos);
+        CHECK(s.advance(1, steps(Integration::Method::implicit_euler, 1e-12)).failure.find("a million steps") !=
+              std::string::npos);
         Integration stopped = steps(Integration::Method::implicit_euler, 1e-3);
         stopped.cancelled = [] { return true; };
         CHECK(s.advance(1, stopped).failure == "cancelled");

@@ -39,7 +39,8 @@ TEST_CASE("all interpolation modes follow the specification")
     d.animate("default", "translation", "", {1, 3}, {0, 1, 0, 4, 1, 0}, 3);
     d.animate("step", "translation", "STEP", {0, 1, 2}, {1, 1, 0, 2, 1, 0, 3, 1, 0}, 3);
     // Hermite with end values 0 and 4, out-tangent 2 at the first key, in-tangent −1 at the second, 2 s apart.
-    d.animate("cubic", "translation", "CUBICSPLINE", {0, 2}, {9, 9, 9, 0, 1, 0, 2, 0, 0, /**/ -1, 0, 0, 4, 1, 0, 9, 9, 9}, 3);
+    d.animate("cubic", "translation", "CUBICSPLINE", {0, 2},
+              {9, 9, 9, 0, 1, 0, 2, 0, 0, /**/ -1, 0, 0, 4, 1, 0, 9, 9, 9}, 3);
     d.animate("turn", "rotation", "LINEAR", {0, 1}, {0, 0, 0, 1, 0, 0, 0.70710678f, 0.70710678f}, 4);
     d.animate("long way", "rotation", "LINEAR", {0, 1}, {0, 0, 0, 1, 0, 0, -0.70710678f, -0.70710678f}, 4);
     d.animate("grow", "scale", "LINEAR", {0, 1}, {1, 1, 1, 3, 1, 0.5f}, 3);
@@ -73,7 +74,8 @@ TEST_CASE("sparse accessors replace elements")
 {
     Document d = triangle();
     const int at = d.view<std::uint16_t>({2}), value = d.view<float>({7, 8, 9});
-    d.root["accessors"][0]["sparse"] = {{"count", 1}, {"indices", {{"bufferView", at}, {"componentType", 5123}}}, {"values", {{"bufferView", value}}}};
+    d.root["accessors"][0]["sparse"] = {
+        {"count", 1}, {"indices", {{"bufferView", at}, {"componentType", 5123}}}, {"values", {{"bufferView", value}}}};
     CHECK(d.parse().mesh.vertices[2] == Vec3(7, 8, 9));
 }
 
@@ -92,20 +94,80 @@ TEST_CASE("malformed characters are refused in one line")
         }
     };
     Document d = triangle();
-    SECTION("joint index") { d.root["accessors"][1]["bufferView"] = d.view<std::uint8_t>(std::vector<std::uint8_t>(16, 7)); refused(d, "names joint 7; skin 0 has 2"); }
-    SECTION("negative joint index") { d.root["accessors"][1]["bufferView"] = d.view<std::int8_t>(std::vector<std::int8_t>(16, -3)); d.root["accessors"][1]["componentType"] = 5120; refused(d, "names joint -3"); }
-    SECTION("vertex index") { d.root["accessors"][4]["bufferView"] = d.view<std::uint16_t>({0, 1, 2, 3, 1, 9}); refused(d, "vertex index 9 is out of range"); }
-    SECTION("accessor past its view") { d.root["accessors"][0]["count"] = 5; refused(d, "reaches past bufferViews[0]"); }
-    SECTION("absurd count") { d.root["accessors"][0]["count"] = 4000000000u; refused(d, "more than the file's buffers have bytes"); }
-    SECTION("NaN") { d.root["accessors"][0]["bufferView"] = d.view<float>(std::vector<float>(12, NAN)); refused(d, "not finite"); }
-    SECTION("cycle") { d.root["nodes"][1]["children"] = {2}; d.root["nodes"][2]["children"] = {1}; refused(d, "its own ancestor"); }
-    SECTION("two parents") { d.root["nodes"].push_back({{"children", {1}}}); d.root["nodes"].push_back({{"children", {1}}}); refused(d, "two parents"); }
-    SECTION("no skin") { d.root.erase("skins"); d.root["nodes"][0].erase("skin"); refused(d, "no skin"); }
-    SECTION("short bind matrices") { d.root["accessors"][3]["count"] = 1; refused(d, "fewer inverse bind matrices"); }
-    SECTION("interpolation") { d.animate("a", "scale", "BEZIER", {0, 1}, {1, 1, 1, 1, 1, 1}, 3); refused(d, "unknown interpolation"); }
-    SECTION("key times") { d.animate("a", "scale", "LINEAR", {1, 0}, {1, 1, 1, 1, 1, 1}, 3); refused(d, "do not ascend"); }
-    SECTION("key count") { d.animate("a", "scale", "CUBICSPLINE", {0, 1}, {1, 1, 1, 1, 1, 1}, 3); refused(d, "2 keys but 2 values"); }
-    SECTION("compression") { d.root["extensionsRequired"] = {"KHR_draco_mesh_compression"}; refused(d, "compressed"); }
+    SECTION("joint index")
+    {
+        d.root["accessors"][1]["bufferView"] = d.view<std::uint8_t>(std::vector<std::uint8_t>(16, 7));
+        refused(d, "names joint 7; skin 0 has 2");
+    }
+    SECTION("negative joint index")
+    {
+        d.root["accessors"][1]["bufferView"] = d.view<std::int8_t>(std::vector<std::int8_t>(16, -3));
+        d.root["accessors"][1]["componentType"] = 5120;
+        refused(d, "names joint -3");
+    }
+    SECTION("vertex index")
+    {
+        d.root["accessors"][4]["bufferView"] = d.view<std::uint16_t>({0, 1, 2, 3, 1, 9});
+        refused(d, "vertex index 9 is out of range");
+    }
+    SECTION("accessor past its view")
+    {
+        d.root["accessors"][0]["count"] = 5;
+        refused(d, "reaches past bufferViews[0]");
+    }
+    SECTION("absurd count")
+    {
+        d.root["accessors"][0]["count"] = 4000000000u;
+        refused(d, "more than the file's buffers have bytes");
+    }
+    SECTION("NaN")
+    {
+        d.root["accessors"][0]["bufferView"] = d.view<float>(std::vector<float>(12, NAN));
+        refused(d, "not finite");
+    }
+    SECTION("cycle")
+    {
+        d.root["nodes"][1]["children"] = {2};
+        d.root["nodes"][2]["children"] = {1};
+        refused(d, "its own ancestor");
+    }
+    SECTION("two parents")
+    {
+        d.root["nodes"].push_back({{"children", {1}}});
+        d.root["nodes"].push_back({{"children", {1}}});
+        refused(d, "two parents");
+    }
+    SECTION("no skin")
+    {
+        d.root.erase("skins");
+        d.root["nodes"][0].erase("skin");
+        refused(d, "no skin");
+    }
+    SECTION("short bind matrices")
+    {
+        d.root["accessors"][3]["count"] = 1;
+        refused(d, "fewer inverse bind matrices");
+    }
+    SECTION("interpolation")
+    {
+        d.animate("a", "scale", "BEZIER", {0, 1}, {1, 1, 1, 1, 1, 1}, 3);
+        refused(d, "unknown interpolation");
+    }
+    SECTION("key times")
+    {
+        d.animate("a", "scale", "LINEAR", {1, 0}, {1, 1, 1, 1, 1, 1}, 3);
+        refused(d, "do not ascend");
+    }
+    SECTION("key count")
+    {
+        d.animate("a", "scale", "CUBICSPLINE", {0, 1}, {1, 1, 1, 1, 1, 1}, 3);
+        refused(d, "2 keys but 2 values");
+    }
+    SECTION("compression")
+    {
+        d.root["extensionsRequired"] = {"KHR_draco_mesh_compression"};
+        refused(d, "compressed");
+    }
     CHECK_THROWS_AS(parse_gltf("glTF and then nothing", "a.glb"), InputError);
     CHECK_THROWS_AS(parse_gltf("{", "a.gltf"), InputError);
 }
@@ -141,7 +203,8 @@ TEST_CASE("joint matrices and weights equal the reference of every character")
                     for (int r = 0; r < 3; ++r)
                         for (int col = 0; col < 4; ++col) {
                             const double wanted = reference[j].m[r][col];
-                            worst = std::max(worst, std::abs(frame[j].m[r][col] - wanted) / std::max({1.0, std::abs(wanted), col == 3 ? size : 0.0}));
+                            worst = std::max(worst, std::abs(frame[j].m[r][col] - wanted) /
+                                                        std::max({1.0, std::abs(wanted), col == 3 ? size : 0.0}));
                         }
             }
             CHECK(worst < 5e-6); // key frames are floats, and chains of up to ten joints multiply them

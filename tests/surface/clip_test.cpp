@@ -8,13 +8,14 @@ using namespace cinch;
 TEST_CASE("a clip makes the frames that are asked for, and no others")
 {
     std::vector<std::size_t> made;
-    const Clip clip("long", 1'000'000'000'000, [](std::size_t i) { return 0.5 * static_cast<double>(i); },
-                    [&](std::size_t i) {
-                        made.push_back(i);
-                        Clip::Frame maps(1, identity_map);
-                        maps[0].m[0][3] = static_cast<double>(i);
-                        return maps;
-                    });
+    const Clip clip(
+        "long", 1'000'000'000'000, [](std::size_t i) { return 0.5 * static_cast<double>(i); },
+        [&](std::size_t i) {
+            made.push_back(i);
+            Clip::Frame maps(1, identity_map);
+            maps[0].m[0][3] = static_cast<double>(i);
+            return maps;
+        });
     const Clip three = evenly_spread(clip, 3);
     CHECK(made.empty());
     REQUIRE(three.frame_count() == 3);

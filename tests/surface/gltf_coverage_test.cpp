@@ -192,8 +192,8 @@ TEST_CASE("what programs add that moves or multiplies the surface is refused by 
         json line = thin.root["meshes"][0]["primitives"][0];
         line["mode"] = mode;
         thin.root["meshes"][0]["primitives"].push_back(line);
-        CHECK_THAT(refusal(thin.root.dump()), Catch::Contains(mode == 0 ? "points (meshes[0].primitives[1])"
-                                                                        : "lines (meshes[0].primitives[1])"));
+        CHECK_THAT(refusal(thin.root.dump()),
+                   Catch::Contains(mode == 0 ? "points (meshes[0].primitives[1])" : "lines (meshes[0].primitives[1])"));
     }
     Document attribute = furnished();
     attribute.root["meshes"][0]["primitives"][0]["attributes"]["WOBBLE"] = 0;
@@ -333,10 +333,10 @@ TEST_CASE("pointers at nodes are channels, those at materials are nothing, all o
         CHECK(box_at(a, a.animations[0], t).low == box_at(b, b.animations[0], t).low);
         CHECK(box_at(a, a.animations[0], t).high == box_at(b, b.animations[0], t).high);
     }
-    for (const char* pointer : {"/materials/0/pbrMetallicRoughness/baseColorFactor", "/cameras/0/perspective/yfov",
-                                "/extensions/KHR_lights_punctual/lights/0/intensity",
-                                "/materials/0/extensions/KHR_texture_transform/offset",
-                                "/nodes/3/extensions/KHR_lights_punctual/light", "/nodes/3/translation"})
+    for (const char* pointer :
+         {"/materials/0/pbrMetallicRoughness/baseColorFactor", "/cameras/0/perspective/yfov",
+          "/extensions/KHR_lights_punctual/lights/0/intensity", "/materials/0/extensions/KHR_texture_transform/offset",
+          "/nodes/3/extensions/KHR_lights_punctual/light", "/nodes/3/translation"})
         CHECK(refusal(with(pointer).text()) == "");
     for (const char* pointer :
          {"/nodes/1/matrix", "/nodes/1/extensions/KHR_node_visibility/visible", "/nodes/1/translation/0",

@@ -9,9 +9,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tests/support.hpp"
 #include "cinch/deform.hpp"
 #include "cinch/surface.hpp"
+#include "tests/support.hpp"
 #include "toolkit/surface/character.hpp"
 
 namespace cinch::test {
@@ -95,9 +95,9 @@ inline Document triangle()
     const int joints = d.accessor<std::uint8_t>({0, 1, 0, 0, 1, 0, 0, 0, 1, 1, 0, 0, 0, 1, 0, 0}, "VEC4", 5121, 4);
     const int weights =
         d.accessor<std::uint8_t>({51, 204, 0, 0, 255, 0, 0, 0, 128, 127, 0, 0, 51, 204, 0, 0}, "VEC4", 5121, 4, true);
-    const int bind = d.floats(
-        {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, /**/ 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -1, 0, 1},
-        "MAT4", 16);
+    const int bind =
+        d.floats({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, /**/ 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -1, 0, 1},
+                 "MAT4", 16);
     const int indices = d.accessor<std::uint16_t>({0, 1, 2, 3, 1, 2}, "SCALAR", 5123, 1);
     d.root["skins"] = {{{"joints", {2, 1}}, {"inverseBindMatrices", bind}}};
     d.root["meshes"] = {{{"primitives",

@@ -133,11 +133,8 @@ TEST_CASE("quantised positions are read as they are stored")
         const int view =
             d.view<std::int16_t>({0, 0, 0, 0, 32767, 0, 0, 0, 0, 32767, 0, 0, 0, 0, 0, 0}); // padded to 8 bytes each
         d.root["bufferViews"][static_cast<std::size_t>(view)]["byteStride"] = 8;
-        d.root["accessors"][0] = {{"bufferView", view},
-                                  {"componentType", 5122},
-                                  {"type", "VEC3"},
-                                  {"count", 4},
-                                  {"normalized", normalized}};
+        d.root["accessors"][0] = {
+            {"bufferView", view}, {"componentType", 5122}, {"type", "VEC3"}, {"count", 4}, {"normalized", normalized}};
         CHECK(d.parse().mesh.vertices[1] == Vec3(normalized ? 1 : 32767, 0, 0));
     }
 }
@@ -158,10 +155,9 @@ TEST_CASE("of keys at one time the later one wins, from that time on")
     CHECK(c.animations[0].notes[0] == "clip 'twice': 1 key has the time of the one before; the later one wins");
     CHECK(c.animations[1].notes.empty()); // others are none of its business
     CHECK(sample(c, c.animations[1], 2).frame_count() == 5);
-    CHECK_THROWS_WITH(
-        sample(c, c.animations[2], 2),
-        Catch::Contains(
-            "clip 'back', animations[2].channels[0] (translation of nodes[1] 'moving'): key times do not ascend, key 2"));
+    CHECK_THROWS_WITH(sample(c, c.animations[2], 2),
+                      Catch::Contains("clip 'back', animations[2].channels[0] (translation of nodes[1] 'moving'): key "
+                                      "times do not ascend, key 2"));
 
     std::mt19937 random(
         3); // at the ends, in threes, in steps and splines: the value at a key's time is that of the last key there
@@ -215,8 +211,7 @@ TEST_CASE("what is wrong with a file is said in one line, whole, with its place"
     for (const auto& [text, reason] :
          {std::pair(std::string("{"), "is not valid JSON: parse error at line 1, column 2"),
           {"[]", "its JSON is no object"},
-          {"{\"asset\":{\"version\":\"2.0\"},\"skins\":[{\"joints\":[1e999]}]}",
-           "is not valid JSON: number overflow"},
+          {"{\"asset\":{\"version\":\"2.0\"},\"skins\":[{\"joints\":[1e999]}]}", "is not valid JSON: number overflow"},
           {"{}", "has no asset.version"},
           {"{\"asset\":{\"version\":\"1.0\"}}", "needs glTF 1.0; 2.0 is supported"},
           {"{\"asset\":{\"version\":\"2.0\",\"minVersion\":\"2.1\"}}", "needs glTF 2.1; 2.0 is supported"},

@@ -43,8 +43,8 @@ std::vector<TrueBox> true_boxes(const std::string& name)
 TEST_CASE("reported characters have the boxes that they have")
 {
     for (const std::string name :
-         {"F02_animation_pointer", "F04_matrix_scale10_translation", "F06_zero_accessor_joints",
-          "F07_long_clip_memory", "F09_duplicate_key_times_other_clip", "F11_plus_in_uri", "F16_other_scene"}) {
+         {"F02_animation_pointer", "F04_matrix_scale10_translation", "F06_zero_accessor_joints", "F07_long_clip_memory",
+          "F09_duplicate_key_times_other_clip", "F11_plus_in_uri", "F16_other_scene"}) {
         INFO(name);
         const Character c = read_gltf(report(name + ".gltf"));
         CHECK(c.missing.empty());

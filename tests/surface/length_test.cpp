@@ -15,7 +15,8 @@ TEST_CASE("a length has the same bits wherever its vector stands, is near, and d
     alignas(64) double place[16];
     for (int i = 0; i < 20000; ++i) {
         const double size = std::pow(10.0, exponent(random));
-        const double v[3] = {size * uniform(random), size * uniform(random) * (i % 3 ? 1 : 1e-9), size * uniform(random)};
+        const double v[3] = {size * uniform(random), size * uniform(random) * (i % 3 ? 1 : 1e-9),
+                             size * uniform(random)};
         double first = 0;
         for (std::size_t at = 0; at < 8; ++at) {
             std::memcpy(place + at, v, sizeof v);
@@ -24,7 +25,9 @@ TEST_CASE("a length has the same bits wherever its vector stands, is near, and d
                 first = found;
             REQUIRE(found == first);
         }
-        const long double exact = std::sqrt(static_cast<long double>(v[0]) * v[0] + static_cast<long double>(v[1]) * v[1] + static_cast<long double>(v[2]) * v[2]);
+        const long double exact =
+            std::sqrt(static_cast<long double>(v[0]) * v[0] + static_cast<long double>(v[1]) * v[1] +
+                      static_cast<long double>(v[2]) * v[2]);
         REQUIRE(std::abs(static_cast<long double>(first) - exact) <= 5 * 0x1p-53L * exact);
     }
 }

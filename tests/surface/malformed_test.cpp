@@ -17,10 +17,12 @@ struct Malformed {
 };
 
 const std::string off_points = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n";
-const std::string ply_ascii = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
-                              "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
-const std::string ply_little = "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
-                               "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+const std::string ply_ascii =
+    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+    "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+const std::string ply_little =
+    "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+    "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
 const std::string stl_header(80, ' ');
 const std::string point_zero(12, '\0');
 
@@ -77,41 +79,77 @@ const std::vector<Malformed> files = {
     {"open.ply", "ply\nformat ascii 1.0\nelement vertex 1\n", ":4: the file ends inside the header"},
     {"format.ply", "ply\nformat utf8 1.0\nend_header\n", ":2: unknown format 'utf8'"},
     {"noformat.ply", "ply\nelement vertex 0\nproperty float x\nend_header\n", ":4: the header has no format line"},
-    {"type.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty half x\nend_header\n", ":4: unknown property type 'half'"},
+    {"type.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty half x\nend_header\n",
+     ":4: unknown property type 'half'"},
     {"orphan.ply", "ply\nformat ascii 1.0\nproperty float x\nend_header\n", ":3: a property before any element"},
-    {"novertex.ply", "ply\nformat ascii 1.0\nelement face 0\nproperty list uchar int vertex_indices\nend_header\n", ": the header declares no element 'vertex'"},
-    {"noz.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nend_header\n0 0\n", ": element 'vertex' lacks"},
-    {"noproperties.ply", "ply\nformat ascii 1.0\nelement vertex 3\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n3 0 1 2\n", ": element 'vertex' lacks"},
-    {"nolist.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty int a\nend_header\n0 0 0\n1\n", ": element 'face' has no integer list"},
-    {"floatsize.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty list float int x\nend_header\n", ":4: a list whose size is not an integer"},
-    {"negative.ply", "ply\nformat ascii 1.0\nelement vertex -1\nproperty float x\nend_header\n", ":3: the number of elements is negative"},
-    {"claim.ply", "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\nproperty float y\nproperty float z\nend_header\n", ": element 'vertex' declares 4000000000 items, but only 0 bytes follow"},
+    {"novertex.ply", "ply\nformat ascii 1.0\nelement face 0\nproperty list uchar int vertex_indices\nend_header\n",
+     ": the header declares no element 'vertex'"},
+    {"noz.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nend_header\n0 0\n",
+     ": element 'vertex' lacks"},
+    {"noproperties.ply",
+     "ply\nformat ascii 1.0\nelement vertex 3\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n3 0 "
+     "1 2\n",
+     ": element 'vertex' lacks"},
+    {"nolist.ply",
+     "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nelement face "
+     "1\nproperty int a\nend_header\n0 0 0\n1\n",
+     ": element 'face' has no integer list"},
+    {"floatsize.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty list float int x\nend_header\n",
+     ":4: a list whose size is not an integer"},
+    {"negative.ply", "ply\nformat ascii 1.0\nelement vertex -1\nproperty float x\nend_header\n",
+     ":3: the number of elements is negative"},
+    {"claim.ply",
+     "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\nproperty float y\nproperty "
+     "float z\nend_header\n",
+     ": element 'vertex' declares 4000000000 items, but only 0 bytes follow"},
     {"cutpoints.ply", ply_ascii + "0 0 0\n1 0 0\n0 1\n", ":13: the file ends where"},
     {"index.ply", ply_ascii + "0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", ":13: vertex index 3"},
     {"edge.ply", ply_ascii + "0 0 0\n1 0 0\n0 1 0\n2 0 3\n", ":13: vertex index 3 is out of range"},
-    {"twice.ply", "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nelement vertex 0\nend_header\n", ": the header declares the element 'vertex' twice"},
-    {"strip.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n2 0 -2\n", ":11: vertex index -2 is out of range"},
-    {"noindices.ply", "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\nelement tristrips 1\nproperty int a\nend_header\n1\n", ": element 'tristrips' has no integer list"},
-    {"tetrahedra.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nelement cell 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n4 0 0 0 0\n", ":11: element 'cell' has a list of 4 vertices"},
+    {"twice.ply", "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nelement vertex 0\nend_header\n",
+     ": the header declares the element 'vertex' twice"},
+    {"strip.ply",
+     "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nelement tristrips "
+     "1\nproperty list int int vertex_indices\nend_header\n0 0 0\n2 0 -2\n",
+     ":11: vertex index -2 is out of range"},
+    {"noindices.ply",
+     "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\nelement tristrips "
+     "1\nproperty int a\nend_header\n1\n",
+     ": element 'tristrips' has no integer list"},
+    {"tetrahedra.ply",
+     "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nelement cell "
+     "1\nproperty list int int vertex_indices\nend_header\n0 0 0\n4 0 0 0 0\n",
+     ":11: element 'cell' has a list of 4 vertices"},
     {"minus.ply", ply_ascii + "0 0 0\n1 0 0\n0 1 0\n-3 0 1 2\n", ":13: a list of negative size"},
     {"nan.ply", ply_ascii + "0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n", ":11: a vertex property 'nan' is not finite"},
     {"cutbinary.ply", ply_little + point_zero.substr(0, 7), ": byte 173: the file ends where a vertex property"},
-    {"cutlist.ply", ply_little + point_zero + "\x03\0\0\0\0\0\0\0\0"s, ": byte 190: the file ends where a vertex index"},
-    {"nanbinary.ply", ply_little + "\0\0\xc0\x7f\0\0\0\0\0\0\0\0\x03\0\0\0\0\0\0\0\0\0\0\0\0"s, ": byte 169: a coordinate of vertex 0 is not finite"},
-    {"indexbinary.ply", ply_little + point_zero + "\x03\0\0\0\0\0\0\0\0\xff\xff\xff\xff"s, ": byte 190: vertex index -1 is"},
+    {"cutlist.ply", ply_little + point_zero + "\x03\0\0\0\0\0\0\0\0"s,
+     ": byte 190: the file ends where a vertex index"},
+    {"nanbinary.ply", ply_little + "\0\0\xc0\x7f\0\0\0\0\0\0\0\0\x03\0\0\0\0\0\0\0\0\0\0\0\0"s,
+     ": byte 169: a coordinate of vertex 0 is not finite"},
+    {"indexbinary.ply", ply_little + point_zero + "\x03\0\0\0\0\0\0\0\0\xff\xff\xff\xff"s,
+     ": byte 190: vertex index -1 is"},
     // STL
     {"empty.stl", "", ": the file is empty"},
     {"tiny.stl", "binary", ": byte 6: the file ends inside the 84-byte header"},
     {"cut.stl", stl_header + "\x02\0\0\0"s + std::string(50, '\0'), ": byte 80: binary STL declares 2 triangles"},
-    {"cutsolid.stl", "solid" + std::string(75, ' ') + "\x02\0\0\0"s + std::string(50, '\0'), ": byte 80: binary STL declares 2 triangles"},
-    {"trailing.stl", stl_header + "\x01\0\0\0"s + std::string(50, '\0') + "\n", ": byte 134: 1 trailing byte after the 1 triangle that binary STL declares"},
-    {"trailingsolid.stl", "solid" + std::string(75, ' ') + "\x01\0\0\0"s + std::string(60, '\0'), ": byte 134: 10 trailing bytes after the 1 triangle that binary STL declares"},
+    {"cutsolid.stl", "solid" + std::string(75, ' ') + "\x02\0\0\0"s + std::string(50, '\0'),
+     ": byte 80: binary STL declares 2 triangles"},
+    {"trailing.stl", stl_header + "\x01\0\0\0"s + std::string(50, '\0') + "\n",
+     ": byte 134: 1 trailing byte after the 1 triangle that binary STL declares"},
+    {"trailingsolid.stl", "solid" + std::string(75, ' ') + "\x01\0\0\0"s + std::string(60, '\0'),
+     ": byte 134: 10 trailing bytes after the 1 triangle that binary STL declares"},
     {"claim.stl", stl_header + "\xff\xff\xff\xff"s, ": byte 80: binary STL declares 4294967295 triangles"},
-    {"nan.stl", stl_header + "\x01\0\0\0"s + std::string(12, '\0') + "\0\0\xc0\x7f"s + std::string(34, '\0'), ": byte 96: a coordinate of triangle 0 is not finite"},
-    {"open.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n", ":6: the file ends where 'vertex'"},
-    {"four.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nvertex 0 1 1\nendloop\n", ":7: expected 'endloop' after 3 vertices"},
-    {"two.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nendloop\n", ":6: expected 'vertex', found 'endloop'"},
-    {"over.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 1e400\n", ":4: a coordinate '1e400' is too large"},
+    {"nan.stl", stl_header + "\x01\0\0\0"s + std::string(12, '\0') + "\0\0\xc0\x7f"s + std::string(34, '\0'),
+     ": byte 96: a coordinate of triangle 0 is not finite"},
+    {"open.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n",
+     ":6: the file ends where 'vertex'"},
+    {"four.stl",
+     "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nvertex 0 1 1\nendloop\n",
+     ":7: expected 'endloop' after 3 vertices"},
+    {"two.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nendloop\n",
+     ":6: expected 'vertex', found 'endloop'"},
+    {"over.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 1e400\n",
+     ":4: a coordinate '1e400' is too large"},
     {"noend.stl", "solid a\n", ":2: the file ends where 'facet' or 'endsolid'"},
     // not meshes
     {"packed.ply", "\x1f\x8b\x08\0"s, ": is compressed (gzip); unpack it first"},

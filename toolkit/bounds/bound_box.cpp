@@ -28,7 +28,8 @@ double extrema(const RestBv& bv, std::span<const AffineMap> maps, const Axis& ax
         const Vec3 &c = bv.box.centre, &e = bv.box.half;
         const double p = ((g[0] * c[0] + g[1] * c[1]) + g[2] * c[2]) + g[3];
         const double radius = (std::abs(g[0]) * e[0] + std::abs(g[1]) * e[1]) + std::abs(g[2]) * e[2];
-        const double magnitude = ((a[0] * (std::abs(c[0]) + e[0]) + a[1] * (std::abs(c[1]) + e[1])) + a[2] * (std::abs(c[2]) + e[2])) + a[3];
+        const double magnitude =
+            ((a[0] * (std::abs(c[0]) + e[0]) + a[1] * (std::abs(c[1]) + e[1])) + a[2] * (std::abs(c[2]) + e[2])) + a[3];
         out.plus[i] = radius + p;
         out.minus[i] = radius - p;
         largest = std::max(largest, magnitude);
@@ -37,9 +38,9 @@ double extrema(const RestBv& bv, std::span<const AffineMap> maps, const Axis& ax
     return finite ? largest : infinite;
 }
 
-// The greatest of the n(n − 1) corners of §5.2.2: h at i, what is missing to 1 at j, l elsewhere. Kavan and Žára's coherent form,
-// Σ l b + (h_i − l_i) b_i + (1 − Σ l − (h_i − l_i)) b_j; the factors are exact for weights in units of 2^-53. The sum of n products
-// and the last two pass at most n + 4 roundings on leaves that are below 3 max |b| in all.
+// The greatest of the n(n − 1) corners of §5.2.2: h at i, what is missing to 1 at j, l elsewhere. Kavan and Žára's
+// coherent form, Σ l b + (h_i − l_i) b_i + (1 − Σ l − (h_i − l_i)) b_j; the factors are exact for weights in units of
+// 2^-53. The sum of n products and the last two pass at most n + 4 roundings on leaves that are below 3 max |b| in all.
 double best_corner(WeightSpace space, std::span<const double> b, Rounding rounding)
 {
     if (b.size() == 1)
@@ -62,14 +63,16 @@ double best_corner(WeightSpace space, std::span<const double> b, Rounding roundi
     return succ(best + succ(4 * (n + 8) * unit_roundoff * magnitude + 2 * n * smallest_subnormal));
 }
 
-double box_free_bound(WeightSpace space, std::span<const double> b, Method method, Rounding rounding, BoundScratch& scratch)
+double box_free_bound(WeightSpace space, std::span<const double> b, Method method, Rounding rounding,
+                      BoundScratch& scratch)
 {
     double bound = *std::max_element(b.begin(), b.end());
     if (method == Method::convex)
         return bound;
     if (method == Method::corners)
         return best_corner(space, b, rounding); // as it is: it may well exceed the greatest b
-    // The rounding terms may lift a dual value past a looser method's; every valid bound may be intersected with every other.
+    // The rounding terms may lift a dual value past a looser method's; every valid bound may be intersected with every
+    // other.
     bound = std::min(bound, dual_bound(space, b, second_largest(b), rounding));
     if (method == Method::limited)
         bound = std::min(bound, dual_bound(space, b, best_lambda(space, b, scratch.select), rounding));
@@ -78,8 +81,8 @@ double box_free_bound(WeightSpace space, std::span<const double> b, Method metho
 
 } // namespace
 
-void bound_box(const RestBv& bv, std::span<const AffineMap> maps, Method method, Rounding rounding, std::span<const Axis> axes,
-               BoundScratch& scratch, std::span<double> supports)
+void bound_box(const RestBv& bv, std::span<const AffineMap> maps, Method method, Rounding rounding,
+               std::span<const Axis> axes, BoundScratch& scratch, std::span<double> supports)
 {
     scratch.plus.resize(bv.node.size());
     scratch.minus.resize(bv.node.size());
@@ -98,7 +101,8 @@ void bound_box(const RestBv& bv, std::span<const AffineMap> maps, Method method,
             support = infinite;
             if (!(magnitude < infinite))
                 continue;
-            const double bound = box_free_bound(bv.space, side == 0 ? scratch.plus : scratch.minus, method, rounding, scratch);
+            const double bound =
+                box_free_bound(bv.space, side == 0 ? scratch.plus : scratch.minus, method, rounding, scratch);
             const double widened = rounding == Rounding::proven ? succ(bound + error) : bound;
             if (widened < infinite)
                 support = widened;

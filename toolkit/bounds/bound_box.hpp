@@ -16,11 +16,12 @@ struct BoundScratch {
     std::vector<std::pair<double, double>> select;
 };
 
-/// The paper's k-DOP refit (§5.4) in O(n): 2·axes.size() supports of the deformed BV, place 2a along axis a and 2a + 1 against
-/// it. With Rounding::proven each is an upper bound for every exactly deformed and every computed vertex (evaluate.hpp), and
-/// in doubles limited ≤ eq12 ≤ convex. A transform that is not finite makes them all +∞, and so does overflow those concerned. `method` is convex, corners, eq12 or limited; there is at
-/// least one simulation node. The readable form of what kernel/ does fast.
-void bound_box(const RestBv& bv, std::span<const AffineMap> maps, Method method, Rounding rounding, std::span<const Axis> axes,
-               BoundScratch& scratch, std::span<double> supports);
+/// The paper's k-DOP refit (§5.4) in O(n): 2·axes.size() supports of the deformed BV, place 2a along axis a and 2a + 1
+/// against it. With Rounding::proven each is an upper bound for every exactly deformed and every computed vertex
+/// (evaluate.hpp), and in doubles limited ≤ eq12 ≤ convex. A transform that is not finite makes them all +∞, and so
+/// does overflow those concerned. `method` is convex, corners, eq12 or limited; there is at least one simulation node.
+/// The readable form of what kernel/ does fast.
+void bound_box(const RestBv& bv, std::span<const AffineMap> maps, Method method, Rounding rounding,
+               std::span<const Axis> axes, BoundScratch& scratch, std::span<double> supports);
 
 } // namespace cinch

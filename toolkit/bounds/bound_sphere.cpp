@@ -28,8 +28,9 @@ double norm(const double (&g)[3][3])
 
 } // namespace
 
-void bound_sphere(const RestSphere& bv, std::span<const Vec3> place, std::span<const AffineMap> maps, double vertex_influences, Rounding rounding,
-                  std::span<const Axis> axes, std::span<double> supports) noexcept
+void bound_sphere(const RestSphere& bv, std::span<const Vec3> place, std::span<const AffineMap> maps,
+                  double vertex_influences, Rounding rounding, std::span<const Axis> axes,
+                  std::span<double> supports) noexcept
 {
     double centre[3] = {bv.centre[0], bv.centre[1], bv.centre[2]}, radius = bv.radius;
     double magnitude = bv.centre.lpNorm<1>() + bv.radius; // of every leaf of the sums, for the rounding
@@ -55,12 +56,14 @@ void bound_sphere(const RestSphere& bv, std::span<const Vec3> place, std::span<c
         magnitude += (j.mean + j.weight_spread) * leaf + (stretch + 2) * (j.moment.lpNorm<1>() + j.moment_spread);
         world = std::max(world, reach);
     }
-    // Every leaf passes fewer than n + 24 roundings (norms and square roots included), each sum of leaves is below `magnitude`,
-    // and 3 coordinates and the radius meet in a support: 4(n + 32)u leaves room for the rounding of `magnitude`.
+    // Every leaf passes fewer than n + 24 roundings (norms and square roots included), each sum of leaves is below
+    // `magnitude`, and 3 coordinates and the radius meet in a support: 4(n + 32)u leaves room for the rounding of
+    // `magnitude`.
     const double n = static_cast<double>(bv.influence.size());
     double error = 0;
     if (rounding == Rounding::proven)
-        error = succ(succ(4 * (n + 32) * unit_roundoff * magnitude + 64 * n * smallest_subnormal) + evaluation_error(vertex_influences, world));
+        error = succ(succ(4 * (n + 32) * unit_roundoff * magnitude + 64 * n * smallest_subnormal) +
+                     evaluation_error(vertex_influences, world));
     for (std::size_t a = 0; a < axes.size(); ++a) {
         const int components = std::abs(axes[a][0]) + std::abs(axes[a][1]) + std::abs(axes[a][2]);
         for (std::size_t side = 0; side < 2; ++side) {
@@ -70,7 +73,8 @@ void bound_sphere(const RestSphere& bv, std::span<const Vec3> place, std::span<c
             double support = along + std::sqrt(components) * radius;
             if (rounding == Rounding::proven)
                 support = succ(support + 3 * error);
-            supports[2 * a + side] = support < infinite && magnitude < infinite && world < infinite ? support : infinite;
+            supports[2 * a + side] =
+                support < infinite && magnitude < infinite && world < infinite ? support : infinite;
         }
     }
 }

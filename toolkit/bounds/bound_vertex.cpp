@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "toolkit/bounds/bound_vertex.hpp"
 
-#include "toolkit/bounds/rounding.hpp"
 #include "cinch/deform.hpp"
+#include "toolkit/bounds/rounding.hpp"
 
 namespace cinch {
 
@@ -14,7 +14,10 @@ void bound_vertex(const Vec3& rest, Weights::Row row, std::span<const AffineMap>
     for (std::size_t i = 0; i < row.node.size(); ++i) {
         const auto& m = maps[row.node[i]].m;
         for (int r = 0; r < 3; ++r)
-            magnitude[r] += row.weight[i] * (((std::abs(m[r][0] * rest[0]) + std::abs(m[r][1] * rest[1])) + std::abs(m[r][2] * rest[2])) + std::abs(m[r][3]));
+            magnitude[r] +=
+                row.weight[i] *
+                (((std::abs(m[r][0] * rest[0]) + std::abs(m[r][1] * rest[1])) + std::abs(m[r][2] * rest[2])) +
+                 std::abs(m[r][3]));
     }
     Vec3 error = Vec3::Zero();
     bool finite = true;
@@ -32,7 +35,8 @@ void bound_vertex(const Vec3& rest, Weights::Row row, std::span<const AffineMap>
                     continue;
                 const double coordinate = sign * v[static_cast<int>(r)];
                 // Adding to 0 is exact; every other sum is rounded up.
-                const double upper = rounding == Rounding::proven ? succ(coordinate + error[static_cast<int>(r)]) : coordinate;
+                const double upper =
+                    rounding == Rounding::proven ? succ(coordinate + error[static_cast<int>(r)]) : coordinate;
                 sum = sum == 0 ? upper : rounding == Rounding::proven ? succ(sum + upper) : sum + upper;
             }
             supports[2 * a + side] = finite && sum < infinite ? sum : infinite;

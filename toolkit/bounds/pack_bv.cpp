@@ -48,8 +48,9 @@ public:
         if (out_.node.size() > std::numeric_limits<std::uint32_t>::max() - 8)
             throw std::length_error("pack: over 2^32 influences; use larger leaves");
         if (rest.node.size() > (sizeof(T) == 4 ? most_nodes_in_float : most_nodes_in_double))
-            throw std::length_error(sizeof(T) == 4 ? "pack: a BV has over 65,536 simulation nodes, too many for float; use double"
-                                                   : "pack: a BV has over 1,048,575 simulation nodes; use fewer");
+            throw std::length_error(sizeof(T) == 4
+                                        ? "pack: a BV has over 65,536 simulation nodes, too many for float; use double"
+                                        : "pack: a BV has over 1,048,575 simulation nodes; use fewer");
         bv_ = {};
         bv_.kind = kind;
         bv_.start = static_cast<T>(start);
@@ -81,7 +82,8 @@ public:
     }
 
 private:
-    // The kernels read the maps of nodes 8i to 8i + 7 where they stand side by side (ProjectedMaps::octet), so these come first.
+    // The kernels read the maps of nodes 8i to 8i + 7 where they stand side by side (ProjectedMaps::octet), so these
+    // come first.
     void order_octets_first(std::span<const std::uint32_t> node)
     {
         order_.clear();
@@ -97,19 +99,23 @@ private:
         order_.insert(order_.end(), others.begin(), others.end());
     }
 
-    // Each the node whose box is farthest from those of the probes before it, the first from the middle. None where Eq. 12 may lie below
-    // the second-greatest extremum, or there are too few nodes.
+    // Each the node whose box is farthest from those of the probes before it, the first from the middle. None where Eq.
+    // 12 may lie below the second-greatest extremum, or there are too few nodes.
     void put_probes(const RestBv& rest)
     {
         const std::size_t count = rest.node.size();
-        if (count < guard_probes || std::any_of(rest.space.l.begin(), rest.space.l.end(), [](double l) { return l != 0; }))
+        if (count < guard_probes ||
+            std::any_of(rest.space.l.begin(), rest.space.l.end(), [](double l) { return l != 0; }))
             return;
         std::vector<double> distance(count);
-        auto distance_to = [&](std::size_t j, const Vec3& place) { return (rest.local[j].centre - place).squaredNorm(); };
+        auto distance_to = [&](std::size_t j, const Vec3& place) {
+            return (rest.local[j].centre - place).squaredNorm();
+        };
         for (std::size_t j = 0; j < count; ++j)
             distance[j] = distance_to(j, rest.box.centre);
         for (std::size_t n = 0; n < guard_probes; ++n) {
-            const auto farthest = static_cast<std::size_t>(std::max_element(distance.begin(), distance.end()) - distance.begin());
+            const auto farthest =
+                static_cast<std::size_t>(std::max_element(distance.begin(), distance.end()) - distance.begin());
             out_.node.push_back(rest.node[farthest]);
             if (n == 0)
                 std::fill(distance.begin(), distance.end(), std::numeric_limits<double>::infinity());
@@ -120,7 +126,8 @@ private:
         bv_.probed = true;
     }
 
-    // Whether T holds every component of the axes to within u|a|, and so does the product with what it grows by: none is subnormal, but it may be 0.
+    // Whether T holds every component of the axes to within u|a|, and so does the product with what it grows by: none
+    // is subnormal, but it may be 0.
     static bool are_normal(const OrientedBox& box)
     {
         for (const Vec3& axis : box.axis)
@@ -130,7 +137,8 @@ private:
         return true;
     }
 
-    // The centre's error d in the direction of an axis a is within Σ d_s of it, so a grows by that; a in T is off by u|a| (rounding.hpp).
+    // The centre's error d in the direction of an axis a is within Σ d_s of it, so a grows by that; a in T is off by
+    // u|a| (rounding.hpp).
     void put_oriented(const OrientedBox& box)
     {
         bv_.oriented = true;
@@ -141,7 +149,8 @@ private:
             off = sum_up(off, c.off);
         }
         for (int i = 0; i < 3; ++i) {
-            const double length = box.axis[i].norm(), grown = off == 0 ? 1 : succ(1 + succ(off / length) * (1 + 32 * unit_roundoff));
+            const double length = box.axis[i].norm(),
+                         grown = off == 0 ? 1 : succ(1 + succ(off / length) * (1 + 32 * unit_roundoff));
             for (int s = 0; s < 3; ++s)
                 bv_.axis[i][s] = static_cast<T>(box.axis[i][s] * grown);
         }
@@ -161,15 +170,19 @@ private:
         out_.value.resize(first + 12 * quads_of(rest.point.size()));
         for (std::size_t i = 0; i < rest.point.size(); ++i)
             for (int s = 0; s < 3; ++s) {
-                const double o = extent_.origin[s], x = x_[rest.point[i]][s] - o, y = x - static_cast<double>(bv_.pivot[s]);
+                const double o = extent_.origin[s], x = x_[rest.point[i]][s] - o,
+                             y = x - static_cast<double>(bv_.pivot[s]);
                 const T packed = static_cast<T>(y);
-                for (std::size_t p = i; p < (i + 1 == rest.point.size() ? 4 * quads_of(i + 1) : i + 1); ++p) // the last one to the end of its block
+                for (std::size_t p = i; p < (i + 1 == rest.point.size() ? 4 * quads_of(i + 1) : i + 1);
+                     ++p) // the last one to the end of its block
                     out_.value[first + p / 4 * 12 + 4 * static_cast<std::size_t>(s) + p % 4] = packed;
                 const double rounding = unit_roundoff * (std::abs(y) + (o == 0 ? 0 : std::abs(x)));
                 off[s] = std::max(off[s], succ(std::abs(y - static_cast<double>(packed)) + succ(rounding)));
             }
-        // Σ|q_s| off_s ≤ ‖q‖ Σ off_s; the factor is for the rounding of ‖q‖ and of the product: quotients, squares, root and products, less than 6u.
-        bv_.slack = round_up<T>(succ(succ(rest.slack + succ(succ(off[0] + off[1]) + off[2])) * (1 + 16 * static_cast<double>(unit_roundoff_of<T>))));
+        // Σ|q_s| off_s ≤ ‖q‖ Σ off_s; the factor is for the rounding of ‖q‖ and of the product: quotients, squares,
+        // root and products, less than 6u.
+        bv_.slack = round_up<T>(succ(succ(rest.slack + succ(succ(off[0] + off[1]) + off[2])) *
+                                     (1 + 16 * static_cast<double>(unit_roundoff_of<T>))));
     }
 
     void put_interval(const RestBv& rest, std::size_t j, T& l, T& r)
@@ -199,7 +212,8 @@ private:
             for (int s = 0; s < 3; ++s)
                 radius = sum_up(radius, shifted<T>(rest.local[j].centre[s], extent_.origin[s]).off);
             // ν·radius is rounded once more.
-            const T packed = round_up<T>(radius == 0 ? 0 : succ(radius * (1 + 4 * static_cast<double>(unit_roundoff_of<T>))));
+            const T packed =
+                round_up<T>(radius == 0 ? 0 : succ(radius * (1 + 4 * static_cast<double>(unit_roundoff_of<T>))));
             blocks.put(i, 8, packed, packed);
         }
     }
@@ -223,8 +237,10 @@ private:
         double kappa = 0;
         Vec3 reach; // of |y| about the pivot
         for (int s = 0; s < 3; ++s)
-            reach[s] = sum_up(up_product(std::abs(static_cast<double>(bv_.centre[s]) - static_cast<double>(bv_.pivot[s])), 1 + 4 * unit_roundoff),
-                              static_cast<double>(bv_.half[s]));
+            reach[s] =
+                sum_up(up_product(std::abs(static_cast<double>(bv_.centre[s]) - static_cast<double>(bv_.pivot[s])),
+                                  1 + 4 * unit_roundoff),
+                       static_cast<double>(bv_.half[s]));
         for (std::size_t j = 0; j < rest.node.size(); ++j) {
             const WeightModel& model = rest.model[j];
             const double moved = std::abs(model.mean - means[j]); // dyadic: exact
@@ -295,7 +311,8 @@ private:
 
 } // namespace
 
-template <class T> void pack_bv(const RestBv& rest, std::span<const Vec3> x, const RestExtent& extent, const BvChoice& choice, PackedBvs<T>& out)
+template <class T> void pack_bv(const RestBv& rest, std::span<const Vec3> x, const RestExtent& extent,
+                                const BvChoice& choice, PackedBvs<T>& out)
 {
     Packer<T>(x, extent, out).pack(rest, choice);
 }

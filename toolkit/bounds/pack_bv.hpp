@@ -21,13 +21,14 @@ template <class T> struct PackedBvs {
 /// How one BV is to be bounded.
 struct BvChoice {
     Method kind;
-    double start = 0;                       ///< PackedBv::start
-    const OrientedBox* oriented = nullptr;  ///< to be taken instead of the other box, where all of it is normal in T
-    bool guarded = false;                   ///< it has an Eq. 12 in reserve: the kind local gets probes
+    double start = 0;                      ///< PackedBv::start
+    const OrientedBox* oriented = nullptr; ///< to be taken instead of the other box, where all of it is normal in T
+    bool guarded = false;                  ///< it has an Eq. 12 in reserve: the kind local gets probes
 };
 
-/// Appends one BV, everything rounded outward to T; `x` are the rest vertices. Throws std::length_error for a BV of more simulation nodes
-/// than most_nodes_in_float or most_nodes_in_double.
-template <class T> void pack_bv(const RestBv& rest, std::span<const Vec3> x, const RestExtent& extent, const BvChoice& choice, PackedBvs<T>& out);
+/// Appends one BV, everything rounded outward to T; `x` are the rest vertices. Throws std::length_error for a BV of
+/// more simulation nodes than most_nodes_in_float or most_nodes_in_double.
+template <class T> void pack_bv(const RestBv& rest, std::span<const Vec3> x, const RestExtent& extent,
+                                const BvChoice& choice, PackedBvs<T>& out);
 
 } // namespace cinch

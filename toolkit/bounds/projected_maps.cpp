@@ -55,15 +55,16 @@ Vec3 on_grid(const Vec3& image, const RestExtent& rest)
     return origin;
 }
 
-template <class T>
-void project(std::span<const AffineMap> maps, const RestExtent& rest, int kdop, Rounding rounding, ProjectedMaps<T>& out, Octets octets)
+template <class T> void project(std::span<const AffineMap> maps, const RestExtent& rest, int kdop, Rounding rounding,
+                                ProjectedMaps<T>& out, Octets octets)
 {
     const auto axes = axes_of(kdop);
     const std::size_t record = 4 * projected_rows(axes.size());
     out.kdop = kdop;
     out.origin = maps.empty() ? Vec3::Zero() : on_grid(median_image(maps, rest), rest);
     out.value.resize(maps.size() * record);
-    const ProjectionReport report = project_nodes(maps, rest, axes, rounding == Rounding::proven, out.origin, out.value.data());
+    const ProjectionReport report =
+        project_nodes(maps, rest, axes, rounding == Rounding::proven, out.origin, out.value.data());
     out.unbounded = report.unbounded;
     out.vertex_error = report.vertex_error;
     if (octets == Octets::wanted)

@@ -73,20 +73,23 @@ double rest_support(const RestBv& bv, std::span<const Vec3> x, const Vec3& q)
 
 } // namespace
 
-void readable_local(const RestBv& bv, std::span<const AffineMap> maps, double start, std::span<const Axis> axes, std::span<double> supports)
+void readable_local(const RestBv& bv, std::span<const AffineMap> maps, double start, std::span<const Axis> axes,
+                    std::span<double> supports)
 {
     for (std::size_t a = 0; a < axes.size(); ++a) {
         const std::vector<Functional> all = along(axes[a], bv.node, maps);
         for (const int side : {1, -1}) {
             std::vector<double> b;
             for (std::size_t j = 0; j < all.size(); ++j)
-                b.push_back(side * (all[j].q.dot(bv.local[j].centre) + all[j].theta) + std::min(radius(all[j], bv.local[j]), all[j].q.norm() * bv.radius[j]));
+                b.push_back(side * (all[j].q.dot(bv.local[j].centre) + all[j].theta) +
+                            std::min(radius(all[j], bv.local[j]), all[j].q.norm() * bv.radius[j]));
             supports[2 * a + (side < 0)] = dual(bv.space, b, start);
         }
     }
 }
 
-void readable_support(const RestBv& bv, std::span<const Vec3> x, std::span<const AffineMap> maps, double start, std::span<const Axis> axes, std::span<double> supports)
+void readable_support(const RestBv& bv, std::span<const Vec3> x, std::span<const AffineMap> maps, double start,
+                      std::span<const Axis> axes, std::span<double> supports)
 {
     for (std::size_t a = 0; a < axes.size(); ++a) {
         std::vector<Functional> all = along(axes[a], bv.node, maps);
@@ -97,12 +100,14 @@ void readable_support(const RestBv& bv, std::span<const Vec3> x, std::span<const
             std::vector<double> b;
             for (std::size_t j = 0; j < all.size(); ++j)
                 b.push_back(side * (all[j].q.dot(bv.local[j].centre) + all[j].theta) + radius(all[j], bv.local[j]));
-            supports[2 * a + (side < 0)] = side * (mean.q.dot(bv.pivot) + mean.theta) + rest_support(bv, x, side * mean.q) + dual(bv.space, b, start);
+            supports[2 * a + (side < 0)] = side * (mean.q.dot(bv.pivot) + mean.theta) +
+                                           rest_support(bv, x, side * mean.q) + dual(bv.space, b, start);
         }
     }
 }
 
-void readable_linear(const RestBv& bv, std::span<const Vec3> x, std::span<const AffineMap> maps, std::span<const Axis> axes, std::span<double> supports)
+void readable_linear(const RestBv& bv, std::span<const Vec3> x, std::span<const AffineMap> maps,
+                     std::span<const Axis> axes, std::span<double> supports)
 {
     for (std::size_t a = 0; a < axes.size(); ++a) {
         const std::vector<Functional> all = along(axes[a], bv.node, maps);
@@ -116,7 +121,8 @@ void readable_linear(const RestBv& bv, std::span<const Vec3> x, std::span<const 
             rest += std::abs(p) * bv.model[j].residual + dq.cwiseAbs().dot(bv.model[j].moment);
         }
         for (const int side : {1, -1})
-            supports[2 * a + (side < 0)] = side * (mean.q.dot(bv.pivot) + mean.theta) + rest_support(bv, x, side * direction) + rest;
+            supports[2 * a + (side < 0)] =
+                side * (mean.q.dot(bv.pivot) + mean.theta) + rest_support(bv, x, side * direction) + rest;
     }
 }
 

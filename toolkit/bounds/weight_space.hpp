@@ -9,8 +9,8 @@
 
 namespace cinch {
 
-/// D(λ) = λ + Σ_j [ l_j (b_j − λ) + (h_j − l_j) max(b_j − λ, 0) ] ≥ max { Σ w_j b_j : w ∈ W' } for *every* λ (weak duality).
-/// Proven: at least the exact D(λ) of the doubles given; +∞ if anything overflows. Never NaN.
+/// D(λ) = λ + Σ_j [ l_j (b_j − λ) + (h_j − l_j) max(b_j − λ, 0) ] ≥ max { Σ w_j b_j : w ∈ W' } for *every* λ (weak
+/// duality). Proven: at least the exact D(λ) of the doubles given; +∞ if anything overflows. Never NaN.
 double dual_bound(WeightSpace space, std::span<const double> b, double lambda, Rounding rounding) noexcept;
 
 /// The λ whose D(λ) is the paper's Eq. 12: the second-largest b, or b itself where there is only one.

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Integers that hold the determinant of any three differences of finite doubles, in units of the least bit of all coordinates.
-// A double is less than 2^2098 units of 2^-1074, a difference less than 2^2099, the product of three less than 2^6297 and the
-// determinant, six of those, less than 2^6300: 197 words of 32 bits. A difference has 66 words, the product of two 132, so that of
-// three has 198 before the leading zero goes.
+// Integers that hold the determinant of any three differences of finite doubles, in units of the least bit of all
+// coordinates. A double is less than 2^2098 units of 2^-1074, a difference less than 2^2099, the product of three less
+// than 2^6297 and the determinant, six of those, less than 2^6300: 197 words of 32 bits. A difference has 66 words, the
+// product of two 132, so that of three has 198 before the leading zero goes.
 
 #include <algorithm>
 #include <array>
@@ -110,7 +110,8 @@ inline BigInteger operator*(const BigInteger& a, const BigInteger& b) noexcept
             continue;
         std::uint64_t carry = 0;
         for (std::size_t j = first; j < b.size; ++j) {
-            const std::uint64_t digit = std::uint64_t{a.word[i]} * b.word[j] + product.word[i + j] + carry; // at most 2^64 − 1
+            const std::uint64_t digit =
+                std::uint64_t{a.word[i]} * b.word[j] + product.word[i + j] + carry; // at most 2^64 − 1
             product.word[i + j] = static_cast<std::uint32_t>(digit);
             carry = digit >> 32;
         }

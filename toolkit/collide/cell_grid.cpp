@@ -30,7 +30,7 @@ CellGrid choose_grid(std::span<const Aabb> boxes, double cell) noexcept
             upper = upper.cwiseMax(box.upper);
         }
     if (!(lower[0] <= upper[0]))
-        return grid; // no finite box
+        return grid;                     // no finite box
     grid.origin = lower / 2 + upper / 2; // halved first: no difference from it overflows
     const double reach = std::max((upper - grid.origin).maxCoeff(), (grid.origin - lower).maxCoeff());
     while (!(reach / grid.cell <= greatest_index)) // ends: reach/2^31 is a double
@@ -46,7 +46,8 @@ std::optional<CellRange> cells(const CellGrid& grid, const Aabb& box, std::uint6
     double count = 1;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto i = static_cast<Eigen::Index>(axis);
-        const double first = std::floor((box.lower[i] - grid.origin[i]) / grid.cell), last = std::floor((box.upper[i] - grid.origin[i]) / grid.cell);
+        const double first = std::floor((box.lower[i] - grid.origin[i]) / grid.cell),
+                     last = std::floor((box.upper[i] - grid.origin[i]) / grid.cell);
         if (!(first >= -greatest_index && last <= greatest_index))
             return {};
         range.first[axis] = static_cast<std::int32_t>(first);
@@ -60,7 +61,8 @@ std::optional<CellRange> cells(const CellGrid& grid, const Aabb& box, std::uint6
 
 std::uint32_t hash(const Cell& cell, std::uint32_t buckets) noexcept
 {
-    const auto x = static_cast<std::uint32_t>(cell[0]), y = static_cast<std::uint32_t>(cell[1]), z = static_cast<std::uint32_t>(cell[2]);
+    const auto x = static_cast<std::uint32_t>(cell[0]), y = static_cast<std::uint32_t>(cell[1]),
+               z = static_cast<std::uint32_t>(cell[2]);
     return (x * 73856093u ^ y * 19349663u ^ z * 83492791u) % buckets;
 }
 

@@ -17,19 +17,20 @@ struct CellRange {
     Cell first, last;
 };
 
-/// The cells of spatial hashing [Teschner et al. 2003]. The index of x is ⌊(x − origin)/cell⌋ as computed in double. It never
-/// decreases with x, whatever is rounded, so boxes with a common point have a common cell.
+/// The cells of spatial hashing [Teschner et al. 2003]. The index of x is ⌊(x − origin)/cell⌋ as computed in double. It
+/// never decreases with x, whatever is rounded, so boxes with a common point have a common cell.
 struct CellGrid {
     Vec3 origin = Vec3::Zero();
     double cell = 1;
 };
 
-/// Cells of the given size, doubled until every index of the finite boxes is less than 2³¹ in magnitude; the origin is the centre
-/// of these boxes. A size that is not positive counts as the least normal double, an infinite one as the greatest.
+/// Cells of the given size, doubled until every index of the finite boxes is less than 2³¹ in magnitude; the origin is
+/// the centre of these boxes. A size that is not positive counts as the least normal double, an infinite one as the
+/// greatest.
 CellGrid choose_grid(std::span<const Aabb> boxes, double cell) noexcept;
 
-/// The cells of a box; nothing for one that must be taken to be everywhere and tested against all: it is not finite, or no box
-/// (lower > upper), or reaches beyond the indices, or covers more than `most` cells.
+/// The cells of a box; nothing for one that must be taken to be everywhere and tested against all: it is not finite, or
+/// no box (lower > upper), or reaches beyond the indices, or covers more than `most` cells.
 std::optional<CellRange> cells(const CellGrid& grid, const Aabb& box, std::uint64_t most) noexcept;
 
 /// Calls visit(cell) for every cell of the range.
@@ -44,8 +45,8 @@ template <class Visit> void for_each_cell(const CellRange& range, Visit&& visit)
 /// The bucket of a cell, with their constants; all arithmetic is modulo 2³². buckets > 0.
 std::uint32_t hash(const Cell& cell, std::uint32_t buckets) noexcept;
 
-/// Whether the pair of two boxes is to be reported in this cell: the one of the greater first index along each axis. It is a
-/// cell of both if they have one in common, so a pair is reported exactly once.
+/// Whether the pair of two boxes is to be reported in this cell: the one of the greater first index along each axis. It
+/// is a cell of both if they have one in common, so a pair is reported exactly once.
 bool reports(const Cell& cell, const CellRange& a, const CellRange& b) noexcept;
 
 } // namespace cinch

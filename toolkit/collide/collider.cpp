@@ -28,9 +28,18 @@ BodyId Collider::add(const DeformableSurface& surface, const LazyOptions& own)
     const RestDetail detail = need(own.methods, RestNeed::local) ? RestDetail::inner : RestDetail::boxes;
     return add_own(*parts_, build_bvh(surface, ClusterSize{own.lanes, own.lanes}, detail), surface, own);
 }
-BodyId Collider::add(const Bvh& bvh, const DeformableSurface& surface) { return parts_->add(bvh, nullptr, surface, parts_->options()); }
-BodyId Collider::add(Bvh&& bvh, const DeformableSurface& surface) { return add_own(*parts_, std::move(bvh), surface, parts_->options()); }
-BodyId Collider::add(const Bvh& bvh, const DeformableSurface& surface, const LazyOptions& own) { return parts_->add(bvh, nullptr, surface, own); }
+BodyId Collider::add(const Bvh& bvh, const DeformableSurface& surface)
+{
+    return parts_->add(bvh, nullptr, surface, parts_->options());
+}
+BodyId Collider::add(Bvh&& bvh, const DeformableSurface& surface)
+{
+    return add_own(*parts_, std::move(bvh), surface, parts_->options());
+}
+BodyId Collider::add(const Bvh& bvh, const DeformableSurface& surface, const LazyOptions& own)
+{
+    return parts_->add(bvh, nullptr, surface, own);
+}
 
 void Collider::remove(BodyId body) { parts_->remove(body); }
 std::span<const BodyId> Collider::bodies() const { return parts_->ids(); }

@@ -7,10 +7,10 @@
 #include <string>
 
 #include "cinch/bounds.hpp"
+#include "cinch/environment.hpp"
 #include "toolkit/bounds/rounding.hpp"
 #include "toolkit/collide/exact_pair.hpp"
 #include "toolkit/deform/parallel.hpp"
-#include "cinch/environment.hpp"
 #include "toolkit/hierarchy/lazy_refit.hpp"
 
 namespace cinch {
@@ -23,7 +23,8 @@ double outward(double x) { return std::isnan(x) ? infinite : x; }
 
 } // namespace
 
-BodyId Collider::Parts::add(const Bvh& bvh, std::unique_ptr<const Bvh> own_bvh, const DeformableSurface& surface, const LazyOptions& own)
+BodyId Collider::Parts::add(const Bvh& bvh, std::unique_ptr<const Bvh> own_bvh, const DeformableSurface& surface,
+                            const LazyOptions& own)
 {
     if (own.kdop != options_.kdop || own.lanes != options_.lanes || own.keep_cut != options_.keep_cut)
         throw std::invalid_argument("Collider::add: kdop, lanes and keep_cut must be those of the collider");
@@ -61,7 +62,8 @@ void Collider::Parts::remove(BodyId body)
 void Collider::Parts::require_frame() const
 {
     if (no_frame_)
-        throw std::logic_error(std::string("Collider: a query ") + no_frame_ + "; call update() with one frame per body first");
+        throw std::logic_error(std::string("Collider: a query ") + no_frame_ +
+                               "; call update() with one frame per body first");
 }
 
 const std::vector<std::uint32_t>& Collider::Parts::unknown() const
@@ -109,10 +111,13 @@ void Collider::Parts::sweep()
     const std::size_t side = dop_side(options_.kdop);
     for (std::uint32_t i = 0; i < trees_.size(); ++i)
         if (!trees_[i].empty() && trees_[i].known()) {
-            const double high = static_cast<double>(trees_[i].dop(0)[0]), low = -static_cast<double>(trees_[i].dop(0)[side]), o = trees_[i].origin()[0];
+            const double high = static_cast<double>(trees_[i].dop(0)[0]),
+                         low = -static_cast<double>(trees_[i].dop(0)[side]), o = trees_[i].origin()[0];
             intervals.push_back({-outward(o == 0 ? -low : succ(-low - o)), outward(o == 0 ? high : succ(high + o)), i});
         }
-    std::sort(intervals.begin(), intervals.end(), [](const Interval& x, const Interval& y) { return x.low < y.low || (x.low == y.low && x.body < y.body); });
+    std::sort(intervals.begin(), intervals.end(), [](const Interval& x, const Interval& y) {
+        return x.low < y.low || (x.low == y.low && x.body < y.body);
+    });
     std::vector<std::pair<std::uint32_t, std::uint32_t>> found;
     for (std::size_t i = 0; i < intervals.size(); ++i)
         for (std::size_t j = i + 1; j < intervals.size() && !(intervals[i].high < intervals[j].low); ++j)
@@ -133,7 +138,8 @@ void Collider::Parts::sweep()
         ++counts_.box_tests;
         const BoxTest roots{0, 0};
         BvPair overlapping[4];
-        if (test_boxes({side, trees_[a].dop(0), trees_[b].dop(0), pair.shift.data()}, {&roots, 1}, overlapping) == overlapping)
+        if (test_boxes({side, trees_[a].dop(0), trees_[b].dop(0), pair.shift.data()}, {&roots, 1}, overlapping) ==
+            overlapping)
             continue;
         ++active_;
         pair.leaves.clear();
@@ -148,11 +154,12 @@ void Collider::Parts::sweep()
     counts_.body_pairs = active_;
 }
 
-// For a direction d the supports A and B about the origins O_a and O_b are apart if A(d) + B(−d) + d·(O_a − O_b) < 0. The kernel tests
-// fl(A + B) + shift < 0 instead, s = fl(A + B) being off by u|s|: with |s| ≥ 2|shift| that does no harm to the sign, else it is at most 2u|shift|.
-// Where A + B or the shift overflows: an infinity from rounding up keeps its pair, as infinity and NaN are not < 0; fl(A + B) = −∞ with a finite
-// shift is right, as A + B < −2^128 + 2^103 and the shift is at most 2^128 − 2^104; a shift below −2^128 is −∞, and succ of it NaN. Where they
-// underflow sums are exact, and succ rounds up what a conversion to float loses.
+// For a direction d the supports A and B about the origins O_a and O_b are apart if A(d) + B(−d) + d·(O_a − O_b) < 0.
+// The kernel tests fl(A + B) + shift < 0 instead, s = fl(A + B) being off by u|s|: with |s| ≥ 2|shift| that does no
+// harm to the sign, else it is at most 2u|shift|. Where A + B or the shift overflows: an infinity from rounding up
+// keeps its pair, as infinity and NaN are not < 0; fl(A + B) = −∞ with a finite shift is right, as A + B < −2^128 +
+// 2^103 and the shift is at most 2^128 − 2^104; a shift below −2^128 is −∞, and succ of it NaN. Where they underflow
+// sums are exact, and succ rounds up what a conversion to float loses.
 void Collider::Parts::set_shift(BodyPair& pair) const
 {
     const std::size_t side = dop_side(options_.kdop);
@@ -170,7 +177,10 @@ void Collider::Parts::set_shift(BodyPair& pair) const
         double along = 0;
         for (int r = 0; r < 3; ++r)
             along += axes[d][static_cast<std::size_t>(r)] * (a[r] - b[r]);
-        auto up = [&](double x) { return succ(succ(static_cast<float>(succ(x + rounded))) + 4 * unit_roundoff_of<float> * std::abs(static_cast<float>(x))); };
+        auto up = [&](double x) {
+            return succ(succ(static_cast<float>(succ(x + rounded))) +
+                        4 * unit_roundoff_of<float> * std::abs(static_cast<float>(x)));
+        };
         pair.shift[d] = up(along);
         pair.shift[side + d] = up(-along);
     }
@@ -178,7 +188,8 @@ void Collider::Parts::set_shift(BodyPair& pair) const
         const double from_a = b[r] - a[r];
         const float shift = static_cast<float>(from_a);
         pair.clusters.shift[r] = shift;
-        const double error = outward(std::abs(from_a - static_cast<double>(shift)) + rounded); // infinite where the shift is
+        const double error =
+            outward(std::abs(from_a - static_cast<double>(shift)) + rounded); // infinite where the shift is
         pair.clusters.shift_error = std::max(pair.clusters.shift_error, succ(static_cast<float>(succ(error))));
     }
 }
@@ -202,10 +213,11 @@ void Collider::Parts::descend()
         pair.begin = begin;
         pair.end = tests_.size();
     }
-    parallel_blocks(trees_.size(), trees_.size() > 1 && tests_.size() > 1000 ? 1 : trees_.size(), [&](std::size_t first, std::size_t last) {
-        for (std::size_t i = first; i < last; ++i)
-            trees_[i].supply();
-    });
+    parallel_blocks(trees_.size(), trees_.size() > 1 && tests_.size() > 1000 ? 1 : trees_.size(),
+                    [&](std::size_t first, std::size_t last) {
+                        for (std::size_t i = first; i < last; ++i)
+                            trees_[i].supply();
+                    });
     test_level();
 }
 
@@ -228,8 +240,10 @@ void Collider::Parts::test_level()
             const Piece& piece = pieces_[i];
             const BodyPair& pair = pairs_[piece.pair];
             BvPair* const out = &overlapping_[4 * piece.begin];
-            const BoxInput input{dop_side(options_.kdop), trees_[pair.a].dop(0), trees_[pair.b].dop(0), pair.shift.data()};
-            found_in_[i] = static_cast<std::size_t>(test_boxes(input, std::span(tests_).subspan(piece.begin, piece.end - piece.begin), out) - out);
+            const BoxInput input{dop_side(options_.kdop), trees_[pair.a].dop(0), trees_[pair.b].dop(0),
+                                 pair.shift.data()};
+            found_in_[i] = static_cast<std::size_t>(
+                test_boxes(input, std::span(tests_).subspan(piece.begin, piece.end - piece.begin), out) - out);
         }
     });
     level_.clear();
@@ -253,7 +267,8 @@ void Collider::Parts::follow_fronts()
         BodyPair& pair = pairs_[p];
         LazyRefit &a = trees_[pair.a], &b = trees_[pair.b];
         PairFront& front = kept[{pair.a, pair.b}] = std::move(fronts_[{pair.a, pair.b}]);
-        counts_.box_tests += front.advance(a, b, {dop_side(options_.kdop), a.dop(0), b.dop(0), pair.shift.data()}, pair.leaves);
+        counts_.box_tests +=
+            front.advance(a, b, {dop_side(options_.kdop), a.dop(0), b.dop(0), pair.shift.data()}, pair.leaves);
     }
     fronts_ = std::move(kept);
     level_.clear();
@@ -324,7 +339,8 @@ bool Collider::Parts::test_leaves(Query query, const Sink& sink)
             counts_.triangle_tests += piece.counts.triangle_tests;
             counts_.in_double += piece.counts.in_double;
             counts_.in_exact += piece.counts.in_exact;
-            if (!piece.found.empty() && !sink(query == Query::any ? std::span(piece.found).first(1) : std::span(piece.found)))
+            if (!piece.found.empty() &&
+                !sink(query == Query::any ? std::span(piece.found).first(1) : std::span(piece.found)))
                 return false;
         }
     }
@@ -341,12 +357,13 @@ void Collider::Parts::test_piece(Piece& piece) const
     piece.found.clear();
     piece.counts = {};
     for (const BvPair& leaf : leaves)
-        piece.clusters.push_back({a.slot(leaf.a), b.slot(leaf.b), a.dop(leaf.a), b.dop(leaf.b), a.leaf(leaf.a).triangles, b.leaf(leaf.b).triangles});
+        piece.clusters.push_back({a.slot(leaf.a), b.slot(leaf.b), a.dop(leaf.a), b.dop(leaf.b),
+                                  a.leaf(leaf.a).triangles, b.leaf(leaf.b).triangles});
     test_clusters(pair.clusters, piece.clusters, 0, piece.hits, piece.counts.triangle_tests);
     ExactPair exact(*bodies_[pair.a].surface, a.frame(), *bodies_[pair.b].surface, b.frame());
     for (const TriangleHit& hit : piece.hits) {
-        const TrianglePair triangles{ids_[pair.a], a.triangle(a.leaf(leaves[hit.pair].a).first_triangle + hit.i), ids_[pair.b],
-                                     b.triangle(b.leaf(leaves[hit.pair].b).first_triangle + hit.j)};
+        const TrianglePair triangles{ids_[pair.a], a.triangle(a.leaf(leaves[hit.pair].a).first_triangle + hit.i),
+                                     ids_[pair.b], b.triangle(b.leaf(leaves[hit.pair].b).first_triangle + hit.j)};
         if (!hit.doubtful || exact.intersect(triangles.triangle_a, triangles.triangle_b))
             piece.found.push_back(triangles);
     }
@@ -362,7 +379,8 @@ bool Collider::Parts::list_leaves(const Sink& sink) const
         const LazyRefit &a = trees_[pair.a], &b = trees_[pair.b];
         some.clear();
         for (const BvPair& leaf : pair.leaves)
-            some.push_back({ids_[pair.a], a.triangle(a.leaf(leaf.a).first_triangle), ids_[pair.b], b.triangle(b.leaf(leaf.b).first_triangle)});
+            some.push_back({ids_[pair.a], a.triangle(a.leaf(leaf.a).first_triangle), ids_[pair.b],
+                            b.triangle(b.leaf(leaf.b).first_triangle)});
         if (!some.empty() && !sink(some))
             return false;
     }

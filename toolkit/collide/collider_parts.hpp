@@ -22,7 +22,8 @@ struct Collider::Parts {
 public:
     explicit Parts(const LazyOptions& options) : options_(options) {}
 
-    BodyId add(const Bvh& bvh, std::unique_ptr<const Bvh> own_bvh, const DeformableSurface& surface, const LazyOptions& own);
+    BodyId add(const Bvh& bvh, std::unique_ptr<const Bvh> own_bvh, const DeformableSurface& surface,
+               const LazyOptions& own);
     void remove(BodyId body);
     void set_filter(std::function<bool(BodyId, BodyId)> wanted) { wanted_ = std::move(wanted); }
     void update(std::span<const BodyFrame> frames);
@@ -43,11 +44,11 @@ private:
     // Two bodies whose roots overlap.
     struct BodyPair {
         std::uint32_t a = 0, b = 0;
-        AlignedVector<float> shift;   ///< see BoxInput
+        AlignedVector<float> shift; ///< see BoxInput
         ClusterInput clusters;
         std::size_t begin = 0, end = 0; ///< of its BV pairs in level_
-        std::vector<BvPair> leaves;   ///< that overlap, in order
-        std::size_t tested = 0;       ///< of these
+        std::vector<BvPair> leaves;     ///< that overlap, in order
+        std::size_t tested = 0;         ///< of these
     };
     // Some of the work of a body pair, for one task.
     struct Piece {

@@ -3,16 +3,18 @@
 
 #include <span>
 
-#include "toolkit/collide/triangle_pair.hpp"
 #include "cinch/deform.hpp"
+#include "toolkit/collide/triangle_pair.hpp"
 #include "toolkit/hierarchy/lazy_refit.hpp"
 
 namespace cinch {
 
-/// Pairs of triangles of two deformed bodies by exact predicates on the vertices of evaluate_vertex, or those given. Remembers the last triangle of each.
+/// Pairs of triangles of two deformed bodies by exact predicates on the vertices of evaluate_vertex, or those given.
+/// Remembers the last triangle of each.
 class ExactPair {
 public:
-    ExactPair(const DeformableSurface& a, const BodyFrame& frame_a, const DeformableSurface& b, const BodyFrame& frame_b)
+    ExactPair(const DeformableSurface& a, const BodyFrame& frame_a, const DeformableSurface& b,
+              const BodyFrame& frame_b)
         : a_{a, frame_a, {}, {}, {}}, b_{b, frame_b, {}, {}, {}}
     {
     }
@@ -48,7 +50,9 @@ private:
             triangle = t;
             for (std::size_t c = 0; c < 3; ++c) {
                 const std::uint32_t k = surface.mesh.triangles[t][c];
-                points[c] = frame.positions.empty() ? evaluate_vertex(surface.mesh.vertices[k], surface.weights.of(k), frame.maps) : frame.positions[k];
+                points[c] = frame.positions.empty()
+                                ? evaluate_vertex(surface.mesh.vertices[k], surface.weights.of(k), frame.maps)
+                                : frame.positions[k];
             }
             low = points[0].cwiseMin(points[1]).cwiseMin(points[2]);
             high = points[0].cwiseMax(points[1]).cwiseMax(points[2]);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Exact sums, differences and products of doubles as expansions [Shewchuk 1997]: the value is the sum of the terms, which do not
-// overlap and grow in magnitude, so its sign is that of the last. Exact as long as no operation overflows and every product of
-// terms is a multiple of 2^-1074. Must be compiled with this project's flags.
+// Exact sums, differences and products of doubles as expansions [Shewchuk 1997]: the value is the sum of the terms,
+// which do not overlap and grow in magnitude, so its sign is that of the last. Exact as long as no operation overflows
+// and every product of terms is a multiple of 2^-1074. Must be compiled with this project's flags.
 
 #include <algorithm>
 #include <array>
@@ -57,8 +57,14 @@ template <int N, int M> Expansion<N + M> sum(const Expansion<N>& a, const Expans
     return result;
 }
 
-template <int N, int M> Expansion<N + M> operator+(const Expansion<N>& a, const Expansion<M>& b) noexcept { return sum(a, b, 1); }
-template <int N, int M> Expansion<N + M> operator-(const Expansion<N>& a, const Expansion<M>& b) noexcept { return sum(a, b, -1); }
+template <int N, int M> Expansion<N + M> operator+(const Expansion<N>& a, const Expansion<M>& b) noexcept
+{
+    return sum(a, b, 1);
+}
+template <int N, int M> Expansion<N + M> operator-(const Expansion<N>& a, const Expansion<M>& b) noexcept
+{
+    return sum(a, b, -1);
+}
 
 template <int N, int M> Expansion<2 * N * M> operator*(const Expansion<N>& a, const Expansion<M>& b) noexcept
 {

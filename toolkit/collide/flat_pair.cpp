@@ -15,12 +15,14 @@ template <class Point> bool before(const Point& a, const Point& b) noexcept
 
 Vec2 project(const Vec3& v, Eigen::Index dropped) noexcept { return {v[(dropped + 1) % 3], v[(dropped + 2) % 3]}; }
 
-int projected_orientation(const Vec3& a, const Vec3& b, const Vec3& c, Eigen::Index dropped, OrientationCounts* counts) noexcept
+int projected_orientation(const Vec3& a, const Vec3& b, const Vec3& c, Eigen::Index dropped,
+                          OrientationCounts* counts) noexcept
 {
     return orientation(project(a, dropped), project(b, dropped), project(c, dropped), counts);
 }
 
-/// The corners of a convex hull: three of a proper triangle, or the two ends of a segment in order; a point is its own two ends.
+/// The corners of a convex hull: three of a proper triangle, or the two ends of a segment in order; a point is its own
+/// two ends.
 template <class Point> struct Hull {
     std::size_t size;
     std::array<Point, 3> corner;
@@ -63,8 +65,8 @@ bool contains(const Hull2& edges, const Table& table, const Hull2& points, std::
     return table[0][i] == 0 && !before(points.corner[i], edges.corner[0]) && !before(edges.back(), points.corner[i]);
 }
 
-/// A vertex of the common part of two hulls in a plane is a corner of one that the other contains, or a point where the interiors
-/// of two edges cross.
+/// A vertex of the common part of two hulls in a plane is a corner of one that the other contains, or a point where the
+/// interiors of two edges cross.
 bool overlap(const Hull2& a, const Hull2& b, OrientationCounts* counts) noexcept
 {
     const Table of_b = orientations(a, b, counts), of_a = orientations(b, a, counts);
@@ -125,7 +127,8 @@ bool intersect_flat(const TrianglePoints& a, const TrianglePoints& b, Orientatio
         return intersect_coplanar(large, small, counts);
     const auto& [p, q, r] = large.corner;
     if (large.size == 3) {
-        const int first = orientation(p, q, r, small.corner[0], counts), last = orientation(p, q, r, small.back(), counts);
+        const int first = orientation(p, q, r, small.corner[0], counts),
+                  last = orientation(p, q, r, small.back(), counts);
         if (first != last)
             return intersect_across(small, large, counts);
     } else if (orientation(p, q, small.corner[0], small.corner[1], counts) != 0) {

@@ -7,14 +7,18 @@
 namespace cinch {
 namespace {
 
-bool are_leaves(const LazyRefit& a, const LazyRefit& b, BvPair p) { return a.link(p.a).is_leaf() && b.link(p.b).is_leaf(); }
+bool are_leaves(const LazyRefit& a, const LazyRefit& b, BvPair p)
+{
+    return a.link(p.a).is_leaf() && b.link(p.b).is_leaf();
+}
 
 } // namespace
 
 BoxTest children_of_pair(const LazyRefit& a, const LazyRefit& b, BvPair bvs)
 {
     const LazyRefit::Link &p = a.link(bvs.a), &q = b.link(bvs.b);
-    const bool open_a = !p.is_leaf() && (q.is_leaf() || !(2 * p.size < q.size)), open_b = !q.is_leaf() && (p.is_leaf() || !(2 * q.size < p.size));
+    const bool open_a = !p.is_leaf() && (q.is_leaf() || !(2 * p.size < q.size)),
+               open_b = !q.is_leaf() && (p.is_leaf() || !(2 * q.size < p.size));
     return {open_a ? p.child | BoxTest::both : bvs.a, open_b ? q.child | BoxTest::both : bvs.b};
 }
 
@@ -80,7 +84,8 @@ std::size_t PairFront::advance(LazyRefit& a, LazyRefit& b, const BoxInput& input
     std::vector<std::uint32_t> raise;
     for (const std::uint32_t n : interior) {
         const auto below = std::span(nodes_).subspan(nodes_[n].first_child, nodes_[n].children);
-        if (std::none_of(below.begin(), below.end(), [](const Node& child) { return child.children > 0 || child.overlaps; }))
+        if (std::none_of(below.begin(), below.end(),
+                         [](const Node& child) { return child.children > 0 || child.overlaps; }))
             raise.push_back(n);
     }
     test(raise);

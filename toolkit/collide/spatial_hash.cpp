@@ -46,7 +46,8 @@ void SpatialHash::load(std::span<const Body> bodies)
                 finite &= x.allFinite();
             Aabb box{p[0].cwiseMin(p[1]).cwiseMin(p[2]), p[0].cwiseMax(p[1]).cwiseMax(p[2])};
             if (!finite) // apart from nothing; of NaN cwiseMin says nothing
-                box = {Vec3::Constant(-std::numeric_limits<double>::infinity()), Vec3::Constant(std::numeric_limits<double>::infinity())};
+                box = {Vec3::Constant(-std::numeric_limits<double>::infinity()),
+                       Vec3::Constant(std::numeric_limits<double>::infinity())};
             items_.push_back({b, t, box, {}, !finite});
             if (!finite)
                 continue;
@@ -80,19 +81,23 @@ void SpatialHash::load(std::span<const Body> bodies)
     entries_.resize(static_cast<std::size_t>(count));
     for (std::uint32_t i = static_cast<std::uint32_t>(items_.size()); i-- > 0;)
         if (!items_[i].everywhere)
-            for_each_cell(items_[i].range, [&](const Cell& cell) { entries_[--bucket_[hash(cell, buckets)]] = {cell, i}; });
+            for_each_cell(items_[i].range, [&](const Cell& cell) {
+                entries_[--bucket_[hash(cell, buckets)]] = {cell, i};
+            });
     loaded_ = true;
 }
 
 bool SpatialHash::intersect(const Item& a, const Item& b) const
 {
-    return !apart(a.box, b.box) && cinch::intersect(points_of(bodies_[a.body], a.triangle), points_of(bodies_[b.body], b.triangle));
+    return !apart(a.box, b.box) &&
+           cinch::intersect(points_of(bodies_[a.body], a.triangle), points_of(bodies_[b.body], b.triangle));
 }
 
 void SpatialHash::find(std::vector<TrianglePair>& pairs) const
 {
     if (!loaded_)
-        throw std::logic_error("SpatialHash::find: nothing is loaded; call load() first, and again after one that threw");
+        throw std::logic_error(
+            "SpatialHash::find: nothing is loaded; call load() first, and again after one that threw");
     const auto buckets = static_cast<std::uint32_t>(bucket_.size() - 1);
     auto report = [&](const Item& a, const Item& b) { // a.body < b.body
         if (intersect(a, b))
@@ -127,7 +132,8 @@ void SpatialHash::find(std::vector<TrianglePair>& pairs) const
 
 std::size_t SpatialHash::bytes() const
 {
-    return items_.capacity() * sizeof(Item) + everywhere_.capacity() * 4 + bucket_.capacity() * 4 + entries_.capacity() * sizeof(Entry);
+    return items_.capacity() * sizeof(Item) + everywhere_.capacity() * 4 + bucket_.capacity() * 4 +
+           entries_.capacity() * sizeof(Entry);
 }
 
 } // namespace cinch

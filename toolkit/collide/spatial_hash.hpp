@@ -4,14 +4,15 @@
 #include <span>
 #include <vector>
 
-#include "toolkit/collide/cell_grid.hpp"
 #include "cinch/collider.hpp"
+#include "toolkit/collide/cell_grid.hpp"
 
 namespace cinch {
 
-/// Intersecting triangles of several bodies by spatial hashing [Teschner et al. 2003]: load() enters every triangle in each cell that
-/// its box overlaps, find() goes through the cells of every triangle again. The cells are as large as the mean edge, there are as many
-/// buckets as triangles. Triangles that are not finite or cover too many cells are tested against all.
+/// Intersecting triangles of several bodies by spatial hashing [Teschner et al. 2003]: load() enters every triangle in
+/// each cell that its box overlaps, find() goes through the cells of every triangle again. The cells are as large as
+/// the mean edge, there are as many buckets as triangles. Triangles that are not finite or cover too many cells are
+/// tested against all.
 class SpatialHash {
 public:
     struct Body {
@@ -19,11 +20,11 @@ public:
         std::span<const Vec3> positions; ///< of all vertices
     };
 
-    /// Throws std::invalid_argument for positions that are not one per vertex, std::length_error for over 2^32 entries. All must stay
-    /// alive until after find().
+    /// Throws std::invalid_argument for positions that are not one per vertex, std::length_error for over 2^32 entries.
+    /// All must stay alive until after find().
     void load(std::span<const Body> bodies);
-    /// Appends all pairs, exact and closed, each once, in no particular order. Throws std::logic_error before the first load() and after one
-    /// that threw.
+    /// Appends all pairs, exact and closed, each once, in no particular order. Throws std::logic_error before the first
+    /// load() and after one that threw.
     void find(std::vector<TrianglePair>& pairs) const;
 
     std::size_t bytes() const;

@@ -27,8 +27,8 @@ struct Apex {
     int side;
 };
 
-/// The vertex that the other triangle's plane separates from the other two, and the side it is on; points of the plane count
-/// for either side. The signs are neither all 0 nor all strictly the same.
+/// The vertex that the other triangle's plane separates from the other two, and the side it is on; points of the plane
+/// count for either side. The signs are neither all 0 nor all strictly the same.
 Apex apex(const Signs& s) noexcept
 {
     for (std::size_t i = 0; i < 3; ++i) {
@@ -45,9 +45,9 @@ Apex apex(const Signs& s) noexcept
 
 } // namespace
 
-// [Guigue, Devillers 2003]: both triangles meet the line common to their planes in an interval whose ends lie on the two edges at
-// the apex. With each apex on the positive side of the other's plane, the ends are in order along the line, and two
-// orientations compare the ends of one interval with those of the other without constructing them.
+// [Guigue, Devillers 2003]: both triangles meet the line common to their planes in an interval whose ends lie on the
+// two edges at the apex. With each apex on the positive side of the other's plane, the ends are in order along the
+// line, and two orientations compare the ends of one interval with those of the other without constructing them.
 bool intersect(const TrianglePoints& a, const TrianglePoints& b, OrientationCounts* counts) noexcept
 {
     for (const TrianglePoints* triangle : {&a, &b})

@@ -15,7 +15,8 @@ void round_dyadic(std::span<double> weights, int bits)
     const std::int64_t one = std::int64_t{1} << bits;
     int exponent = 0;
     std::frexp(*std::max_element(weights.begin(), weights.end()), &exponent);
-    for (double& w : weights) // by a power of two, which is exact but for what underflows: neither sum nor quotient can overflow
+    for (double& w :
+         weights) // by a power of two, which is exact but for what underflows: neither sum nor quotient can overflow
         w = std::ldexp(w, -exponent);
     const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
     assert(sum > 0 && std::isfinite(sum));

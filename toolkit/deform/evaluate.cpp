@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cinch/deform.hpp"
 
-#include "toolkit/deform/parallel.hpp"
 #include "cinch/environment.hpp"
+#include "toolkit/deform/parallel.hpp"
 
 namespace cinch {
 

@@ -103,8 +103,11 @@ AffineMap linearise(const Motion& motion, const Vec3& p)
 Clip scripted_clip(const Motion& motion, std::span<const Vec3> nodes, std::size_t frames)
 {
     require_default_arithmetic();
-    auto share = [frames](std::size_t f) { return frames == 1 ? 1.0 : static_cast<double>(f) / static_cast<double>(frames - 1); };
-    auto frame = [motion, share, places = std::make_shared<const std::vector<Vec3>>(nodes.begin(), nodes.end())](std::size_t f) {
+    auto share = [frames](std::size_t f) {
+        return frames == 1 ? 1.0 : static_cast<double>(f) / static_cast<double>(frames - 1);
+    };
+    auto frame = [motion, share,
+                  places = std::make_shared<const std::vector<Vec3>>(nodes.begin(), nodes.end())](std::size_t f) {
         const double s = share(f);
         const Motion now{s * motion.twist, s * motion.bend, s * motion.pull, s * motion.rotate};
         Clip::Frame maps;

@@ -14,8 +14,9 @@
 
 namespace cinch {
 
-/// body(first, last) on pieces of [0, count), in parallel, by the thread's executor (cinch/environment.hpp) or else oneTBB, every piece in the
-/// *caller's* floating-point environment. TBB would otherwise run tasks, on the calling thread too, in the environment in which its arena was created long ago.
+/// body(first, last) on pieces of [0, count), in parallel, by the thread's executor (cinch/environment.hpp) or else
+/// oneTBB, every piece in the *caller's* floating-point environment. TBB would otherwise run tasks, on the calling
+/// thread too, in the environment in which its arena was created long ago.
 template <class Body> void parallel_blocks(std::size_t count, std::size_t grain, const Body& body)
 {
     if (count <= grain) {
@@ -42,7 +43,8 @@ template <class Body> void parallel_blocks(std::size_t count, std::size_t grain,
                                     tbb::task_group_context::default_traits | tbb::task_group_context::fp_settings);
     auto run = [&](const auto& range) { body(range.begin(), range.end()); };
     const tbb::blocked_range<std::size_t> all(0, count, grain);
-#if defined(__SANITIZE_THREAD__) // says what a TBB without instrumentation cannot: pieces come after what was before, and before what is after
+#if defined(__SANITIZE_THREAD__) // says what a TBB without instrumentation cannot: pieces come after what was before,
+                                 // and before what is after
     std::atomic<int> before{0}, after{0}; // two: pieces do not order each other
     before.store(1, std::memory_order_release);
     auto told = [&](const auto& range) {

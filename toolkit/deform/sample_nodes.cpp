@@ -6,9 +6,9 @@
 #include <limits>
 #include <stdexcept>
 
+#include "cinch/environment.hpp"
 #include "toolkit/deform/dyadic.hpp"
 #include "toolkit/deform/parallel.hpp"
-#include "cinch/environment.hpp"
 
 namespace cinch {
 namespace {
@@ -40,7 +40,8 @@ std::vector<Vec3> interior_points(const TriangleMesh& mesh, double points)
     const double cell = std::cbrt(size.prod() / points);
     if (!(size.maxCoeff() / cell < 4096)) // needle-like boxes
         return {};
-    const auto columns_x = static_cast<std::size_t>(size.x() / cell) + 1, columns_y = static_cast<std::size_t>(size.y() / cell) + 1;
+    const auto columns_x = static_cast<std::size_t>(size.x() / cell) + 1,
+               columns_y = static_cast<std::size_t>(size.y() / cell) + 1;
     // Irrational offsets keep the rays off vertices and edges of regular meshes.
     const Vec3 origin = low + cell * Vec3(std::sqrt(2.0) - 1, std::sqrt(3.0) - 1, std::sqrt(5.0) - 2);
 
@@ -50,16 +51,22 @@ std::vector<Vec3> interior_points(const TriangleMesh& mesh, double points)
         const double area = (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
         if (area == 0)
             continue;
-        auto first = [&](double x, double o) { return static_cast<std::size_t>(std::max(0.0, std::ceil((x - o) / cell))); };
-        const std::size_t x0 = first(std::min({a.x(), b.x(), c.x()}), origin.x()), x1 = first(std::max({a.x(), b.x(), c.x()}), origin.x());
-        const std::size_t y0 = first(std::min({a.y(), b.y(), c.y()}), origin.y()), y1 = first(std::max({a.y(), b.y(), c.y()}), origin.y());
+        auto first = [&](double x, double o) {
+            return static_cast<std::size_t>(std::max(0.0, std::ceil((x - o) / cell)));
+        };
+        const std::size_t x0 = first(std::min({a.x(), b.x(), c.x()}), origin.x()),
+                          x1 = first(std::max({a.x(), b.x(), c.x()}), origin.x());
+        const std::size_t y0 = first(std::min({a.y(), b.y(), c.y()}), origin.y()),
+                          y1 = first(std::max({a.y(), b.y(), c.y()}), origin.y());
         for (std::size_t i = x0; i < std::min(x1, columns_x); ++i)
             for (std::size_t j = y0; j < std::min(y1, columns_y); ++j) {
-                const double x = origin.x() + cell * static_cast<double>(i), y = origin.y() + cell * static_cast<double>(j);
+                const double x = origin.x() + cell * static_cast<double>(i),
+                             y = origin.y() + cell * static_cast<double>(j);
                 const double u = ((x - a.x()) * (c.y() - a.y()) - (y - a.y()) * (c.x() - a.x())) / area;
                 const double v = ((b.x() - a.x()) * (y - a.y()) - (b.y() - a.y()) * (x - a.x())) / area;
                 if (u >= 0 && v >= 0 && u + v <= 1)
-                    column[i * columns_y + j].push_back({a.z() + u * (b.z() - a.z()) + v * (c.z() - a.z()), area > 0 ? 1 : -1});
+                    column[i * columns_y + j].push_back(
+                        {a.z() + u * (b.z() - a.z()) + v * (c.z() - a.z()), area > 0 ? 1 : -1});
             }
     }
 
@@ -67,7 +74,8 @@ std::vector<Vec3> interior_points(const TriangleMesh& mesh, double points)
     for (std::size_t i = 0; i < columns_x; ++i)
         for (std::size_t j = 0; j < columns_y; ++j) {
             auto& crossings = column[i * columns_y + j];
-            std::sort(crossings.begin(), crossings.end(), [](const Crossing& p, const Crossing& q) { return p.z < q.z; });
+            std::sort(crossings.begin(), crossings.end(),
+                      [](const Crossing& p, const Crossing& q) { return p.z < q.z; });
             int winding = 0;
             for (const Crossing& c : crossings)
                 winding += c.sign;
@@ -77,8 +85,10 @@ std::vector<Vec3> interior_points(const TriangleMesh& mesh, double points)
                 winding += crossings[c].sign;
                 if (winding == 0)
                     continue;
-                for (double k = std::ceil((crossings[c].z - origin.z()) / cell); origin.z() + cell * k < crossings[c + 1].z; ++k)
-                    inside.emplace_back(origin.x() + cell * static_cast<double>(i), origin.y() + cell * static_cast<double>(j), origin.z() + cell * k);
+                for (double k = std::ceil((crossings[c].z - origin.z()) / cell);
+                     origin.z() + cell * k < crossings[c + 1].z; ++k)
+                    inside.emplace_back(origin.x() + cell * static_cast<double>(i),
+                                        origin.y() + cell * static_cast<double>(j), origin.z() + cell * k);
             }
         }
     return inside;

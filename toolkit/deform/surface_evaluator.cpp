@@ -27,9 +27,10 @@ void split(const std::vector<Vec3>& rest, std::span<std::uint32_t> order)
     Eigen::Index axis;
     (high - low).maxCoeff(&axis);
     const std::size_t half = (order.size() / 2 + 7) / 8 * 8;
-    std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(half), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return rest[a][axis] != rest[b][axis] ? rest[a][axis] < rest[b][axis] : a < b;
-    });
+    std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(half), order.end(),
+                     [&](std::uint32_t a, std::uint32_t b) {
+                         return rest[a][axis] != rest[b][axis] ? rest[a][axis] < rest[b][axis] : a < b;
+                     });
     split(rest, order.first(half));
     split(rest, order.subspan(half));
 }
@@ -53,7 +54,10 @@ template <class T> struct SurfaceEvaluator<T>::Parts {
     AlignedVector<T> weight_;
 };
 
-template <class T> SurfaceEvaluator<T>::SurfaceEvaluator(const DeformableSurface& surface) : parts_(std::make_unique<Parts>(surface)) {}
+template <class T> SurfaceEvaluator<T>::SurfaceEvaluator(const DeformableSurface& surface)
+    : parts_(std::make_unique<Parts>(surface))
+{
+}
 template <class T> SurfaceEvaluator<T>::~SurfaceEvaluator() = default;
 template <class T> SurfaceEvaluator<T>::SurfaceEvaluator(SurfaceEvaluator&&) noexcept = default;
 template <class T> SurfaceEvaluator<T>& SurfaceEvaluator<T>::operator=(SurfaceEvaluator&&) noexcept = default;
@@ -92,7 +96,8 @@ template <class T> SurfaceEvaluator<T>::Parts::Parts(const DeformableSurface& su
         for (std::size_t lane = 0; lane < 8; ++lane) {
             const Weights::Row row = surface.weights.of(group.vertex[lane]);
             for (std::size_t e = 0; e < row.node.size(); ++e) {
-                const auto place = static_cast<std::size_t>(std::lower_bound(nodes.begin(), nodes.end(), row.node[e]) - nodes.begin());
+                const auto place =
+                    static_cast<std::size_t>(std::lower_bound(nodes.begin(), nodes.end(), row.node[e]) - nodes.begin());
                 weight_[8 * (group.first + place) + lane] = static_cast<T>(row.weight[e]);
             }
         }
@@ -114,7 +119,8 @@ template <class T> void SurfaceEvaluator<T>::Parts::evaluate(std::span<const Aff
     }
     AlignedVector<T> packed(12 * maps.size(), 0);
     for (std::size_t j = 0; j < maps.size(); ++j) {
-        const Vec3 t = sizeof(T) == 4 && finite[j] ? Vec3(apply(maps[j], centre_) - origin) : Vec3(maps[j].m[0][3], maps[j].m[1][3], maps[j].m[2][3]);
+        const Vec3 t = sizeof(T) == 4 && finite[j] ? Vec3(apply(maps[j], centre_) - origin)
+                                                   : Vec3(maps[j].m[0][3], maps[j].m[1][3], maps[j].m[2][3]);
         for (std::size_t r = 0; r < 3; ++r) {
             for (std::size_t c = 0; c < 3; ++c)
                 packed[12 * j + 4 * r + c] = static_cast<T>(maps[j].m[r][c]);
@@ -132,7 +138,8 @@ template <class T> void SurfaceEvaluator<T>::Parts::evaluate(std::span<const Aff
                 continue;
             }
             alignas(64) T place[3][8];
-            evaluate_group(group.rest[0], node, weight_.data() + 8 * std::size_t(group.first), group.count, packed.data(), place[0]);
+            evaluate_group(group.rest[0], node, weight_.data() + 8 * std::size_t(group.first), group.count,
+                           packed.data(), place[0]);
             for (std::size_t lane = 0; lane < 8; ++lane)
                 out[group.vertex[lane]] = origin + Vec3(place[0][lane], place[1][lane], place[2][lane]);
         }

@@ -6,8 +6,8 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "toolkit/deform/dyadic.hpp"
 #include "cinch/environment.hpp"
+#include "toolkit/deform/dyadic.hpp"
 
 namespace cinch {
 
@@ -24,7 +24,8 @@ Weights to_dyadic(const Influences& influences, WeightReport* report)
         const std::size_t first = influences.row[k], last = influences.row[k + 1];
         if (first >= last)
             throw std::invalid_argument("to_dyadic: vertex " + std::to_string(k) + " has no influence");
-        weights.assign(influences.weight.begin() + static_cast<std::ptrdiff_t>(first), influences.weight.begin() + static_cast<std::ptrdiff_t>(last));
+        weights.assign(influences.weight.begin() + static_cast<std::ptrdiff_t>(first),
+                       influences.weight.begin() + static_cast<std::ptrdiff_t>(last));
         const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
         if (std::all_of(weights.begin(), weights.end(), [](double w) { return w == 0; })) {
             ++counted.without_weight;
@@ -36,7 +37,8 @@ Weights to_dyadic(const Influences& influences, WeightReport* report)
             const double off = std::abs(sum - 1), rounding = sum_rounding(weights.size());
             if (!(off <= rounding)) {
                 ++counted.normalised;
-                counted.beyond_steps += !(off <= rounding + 0.5 * influences.step * static_cast<double>(weights.size()));
+                counted.beyond_steps +=
+                    !(off <= rounding + 0.5 * influences.step * static_cast<double>(weights.size()));
                 counted.largest_change = std::max(counted.largest_change, std::abs(1 / sum - 1));
             }
         }

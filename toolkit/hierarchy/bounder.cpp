@@ -9,14 +9,14 @@
 #include <hwy/cache_control.h>
 #include <tbb/enumerable_thread_specific.h>
 
+#include "cinch/bounds.hpp"
+#include "cinch/environment.hpp"
 #include "toolkit/bounds/bound_box.hpp"
 #include "toolkit/bounds/bound_vertex.hpp"
-#include "cinch/bounds.hpp"
 #include "toolkit/bounds/rounding.hpp"
 #include "toolkit/hierarchy/dop.hpp"
 #include "toolkit/hierarchy/packed_bvh.hpp"
 #include "toolkit/hierarchy/spheres.hpp"
-#include "cinch/environment.hpp"
 
 namespace cinch {
 namespace {
@@ -34,16 +34,26 @@ template <class T> struct KernelPart {
     mutable std::vector<T> remembered; // each BV's own places
     mutable tbb::enumerable_thread_specific<KernelScratch<T>> scratch;
 
-    KernelPart(const Bvh& bvh, const DeformableSurface& surface, Method method, const RefitOptions& options, Bounder::Leaves leaves)
-        : packed(pack<T>(bvh, surface, choose_kinds(bvh, surface, method, options.rest_shape, leaves == Bounder::Leaves::included ? for_refits : for_queries),
+    KernelPart(const Bvh& bvh, const DeformableSurface& surface, Method method, const RefitOptions& options,
+               Bounder::Leaves leaves)
+        : packed(pack<T>(bvh, surface,
+                         choose_kinds(bvh, surface, method, options.rest_shape,
+                                      leaves == Bounder::Leaves::included ? for_refits : for_queries),
                          leaves == Bounder::Leaves::included))
     {
         if (options.remember)
-            remembered.assign(2 * packed.bvs.size() * static_cast<std::size_t>(options.kdop), std::numeric_limits<T>::quiet_NaN());
+            remembered.assign(2 * packed.bvs.size() * static_cast<std::size_t>(options.kdop),
+                              std::numeric_limits<T>::quiet_NaN());
     }
     KernelInput<T> input(const ProjectedMaps<T>& maps, const RefitOptions& options) const
     {
-        return {packed.bvs, packed.node, packed.value, &maps, options.rounding, options.passes, packed.place.empty() ? nullptr : packed.place.data(),
+        return {packed.bvs,
+                packed.node,
+                packed.value,
+                &maps,
+                options.rounding,
+                options.passes,
+                packed.place.empty() ? nullptr : packed.place.data(),
                 remembered.empty() ? nullptr : remembered.data()};
     }
 };
@@ -53,7 +63,8 @@ template <class T> using KernelParts = std::vector<std::unique_ptr<KernelPart<T>
 // What is asked for, or doubles where a BV has too many simulation nodes for float.
 Precision precision_for(const Bvh& bvh, Precision wanted)
 {
-    const bool fits = std::all_of(bvh.bvs.begin(), bvh.bvs.end(), [](const Bv& bv) { return bv.influence_count <= most_nodes_in_float; });
+    const bool fits = std::all_of(bvh.bvs.begin(), bvh.bvs.end(),
+                                  [](const Bv& bv) { return bv.influence_count <= most_nodes_in_float; });
     return fits ? wanted : Precision::float64;
 }
 
@@ -86,7 +97,8 @@ struct Bounder::Parts {
             intersect<double>(supports, own);
         }
         if (spheres) {
-            bound_sphere(spheres->of(bvh.bvs[bv], bv), spheres->place, maps, bvh.bvs[bv].vertex_influences, options.rounding, axes, own);
+            bound_sphere(spheres->of(bvh.bvs[bv], bv), spheres->place, maps, bvh.bvs[bv].vertex_influences,
+                         options.rounding, axes, own);
             intersect<double>(supports, own);
         }
         if (options.methods.contains(Method::vertices)) {
@@ -100,18 +112,33 @@ struct Bounder::Parts {
             intersect<double>(supports, std::span(most).first(k()));
         }
     }
-    bool has_others() const { return spheres || options.methods.contains(Method::corners) || options.methods.contains(Method::vertices); }
+    bool has_others() const
+    {
+        return spheres || options.methods.contains(Method::corners) || options.methods.contains(Method::vertices);
+    }
 };
 
 Bounder::Bounder(const Bvh& bvh, const DeformableSurface& surface, const RefitOptions& options, Leaves leaves)
-    : parts_(new Parts{bvh, surface, options, rest_extent(bvh, surface, options.rest_shape), leaves == Leaves::included ? Octets::wanted : Octets::left_out, {}, {}, {}, {}, {}, {}, {}})
+    : parts_(new Parts{bvh,
+                       surface,
+                       options,
+                       rest_extent(bvh, surface, options.rest_shape),
+                       leaves == Leaves::included ? Octets::wanted : Octets::left_out,
+                       {},
+                       {},
+                       {},
+                       {},
+                       {},
+                       {},
+                       {}})
 {
     if (!is_kdop(options.kdop))
         throw std::invalid_argument("k must be " + kdop_names());
     require_default_arithmetic();
     if ((bvh.detail == RestDetail::boxes && need(options.methods, RestNeed::local)) ||
         (bvh.detail == RestDetail::inner && need(options.methods, RestNeed::points) && leaves == Leaves::included))
-        throw std::invalid_argument("refit: the BVH was built without the rest data that these methods need (RestDetail)");
+        throw std::invalid_argument(
+            "refit: the BVH was built without the rest data that these methods need (RestDetail)");
     const Precision precision = precision_for(bvh, options.precision);
     for (const Method method : kernel_methods) {
         if (!options.methods.contains(method))
@@ -195,7 +222,8 @@ void Bounder::bound(std::span<const std::uint32_t> list, float* dops) const
     const Parts& p = *parts_;
     const std::size_t side = dop_side(p.options.kdop);
     if (p.single.size() == 1 && p.twice.empty() && !p.has_others())
-        return bound_packed(p.single[0]->input(p.single_maps, p.options), list, p.single[0]->scratch.local(), side, dops);
+        return bound_packed(p.single[0]->input(p.single_maps, p.options), list, p.single[0]->scratch.local(), side,
+                            dops);
     if (p.twice.size() == 1 && p.single.empty() && !p.has_others())
         return bound_packed(p.twice[0]->input(p.double_maps, p.options), list, p.twice[0]->scratch.local(), side, dops);
     // Several at once, or what has no kernel: in the world, and from there to the origin, rounded up at every step.
@@ -206,10 +234,12 @@ void Bounder::bound(std::span<const std::uint32_t> list, float* dops) const
         for (std::size_t d = 0; d < p.k(); ++d) {
             double sum = supports[d];
             for (std::size_t r = 0; r < 3; ++r)
-                if (const int sign = d % 2 == 0 ? axes[d / 2][r] : -axes[d / 2][r]; sign != 0 && p.single_maps.origin[static_cast<int>(r)] != 0)
+                if (const int sign = d % 2 == 0 ? axes[d / 2][r] : -axes[d / 2][r];
+                    sign != 0 && p.single_maps.origin[static_cast<int>(r)] != 0)
                     sum = succ(sum - sign * p.single_maps.origin[static_cast<int>(r)]);
             const float support = succ(static_cast<float>(sum));
-            dops[bv * 2 * side + (d % 2) * side + d / 2] = support < std::numeric_limits<float>::infinity() ? support : std::numeric_limits<float>::infinity();
+            dops[bv * 2 * side + (d % 2) * side + d / 2] =
+                support < std::numeric_limits<float>::infinity() ? support : std::numeric_limits<float>::infinity();
         }
     }
 }

@@ -4,13 +4,14 @@
 #include <memory>
 #include <span>
 
-#include "toolkit/bounds/projected_maps.hpp"
 #include "cinch/refit.hpp"
+#include "toolkit/bounds/projected_maps.hpp"
 
 namespace cinch {
 
-/// Bounds single BVs of one surface by the methods of the ladder, in the frame last begun. Surface and BVH must stay as they are, and
-/// alive; with methods that have kernels (all but sphere, corners and vertices) and no remembered λ, the BVH may go.
+/// Bounds single BVs of one surface by the methods of the ladder, in the frame last begun. Surface and BVH must stay as
+/// they are, and alive; with methods that have kernels (all but sphere, corners and vertices) and no remembered λ, the
+/// BVH may go.
 class Bounder {
 public:
     enum class Leaves { included, left_out }; ///< those left out cost no memory, and must not be bounded
@@ -20,8 +21,9 @@ public:
     ~Bounder();
     Bounder(Bounder&&) noexcept;
 
-    /// Begins a frame; `maps` must stay alive through it. Returns how many simulation nodes have a transform that is not finite, or too
-    /// large for the arithmetic. Throws std::invalid_argument unless there is one transform per simulation node.
+    /// Begins a frame; `maps` must stay alive through it. Returns how many simulation nodes have a transform that is
+    /// not finite, or too large for the arithmetic. Throws std::invalid_argument unless there is one transform per
+    /// simulation node.
     std::size_t begin(std::span<const AffineMap> maps);
 
     /// supports[(bv − first)·k + d] for BVs [first, last), d as in axes_of(k), in the world. Any thread may call it.

@@ -92,9 +92,9 @@ RestData merged(const RestData& a, const RestData& b)
     return out;
 }
 
-// Doubles whose real box contains the range. The computed half is at most 5u·m too large for m = max |coordinate|: the centre
-// is off the middle by ≤ u·m, which counts twice, the difference and succ add ≤ 3u·half, half ≤ m. A BV's own box gets 16u·m
-// more (where it is not flat), so that it contains its local boxes as real boxes.
+// Doubles whose real box contains the range. The computed half is at most 5u·m too large for m = max |coordinate|: the
+// centre is off the middle by ≤ u·m, which counts twice, the difference and succ add ≤ 3u·half, half ≤ m. A BV's own
+// box gets 16u·m more (where it is not flat), so that it contains its local boxes as real boxes.
 RestBox box_around(const Range& range, bool own)
 {
     RestBox box;
@@ -115,7 +115,8 @@ void set_boxes(const DeformableSurface& surface, Bvh& bvh)
     std::vector<RestData> data(bvh.bvs.size());
     for (std::size_t i = bvh.bvs.size(); i-- > 0;) { // children before parents
         const Bv& bv = bvh.bvs[i];
-        data[i] = bv.is_leaf() ? leaf_data(surface, vertices_of(surface, bvh, bv)) : merged(data[bv.first_child], data[bv.first_child + 1]);
+        data[i] = bv.is_leaf() ? leaf_data(surface, vertices_of(surface, bvh, bv))
+                               : merged(data[bv.first_child], data[bv.first_child + 1]);
     }
     std::size_t influences = 0;
     for (const RestData& d : data)

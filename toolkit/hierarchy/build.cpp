@@ -30,7 +30,8 @@ void split(std::span<std::uint32_t> units, std::span<const Vec3> centroid)
                      [&](std::uint32_t s, std::uint32_t t) { return key(s) < key(t); });
 }
 
-// A tree over what has these centroids, triangles for now: splits what is more than `leaf`. Sets everything about triangles.
+// A tree over what has these centroids, triangles for now: splits what is more than `leaf`. Sets everything about
+// triangles.
 void split_all(std::span<const Vec3> centroid, std::size_t leaf, Bvh& bvh)
 {
     bvh.triangle.resize(centroid.size());
@@ -65,7 +66,8 @@ void expand(const Clusters& clusters, Bvh& bvh)
     std::vector<std::uint32_t> triangle, begin; // begin: where the triangles of the cluster in each place now begin
     for (const std::uint32_t c : bvh.triangle) {
         begin.push_back(static_cast<std::uint32_t>(triangle.size()));
-        triangle.insert(triangle.end(), clusters.triangle.begin() + clusters.first[c], clusters.triangle.begin() + clusters.first[c + 1]);
+        triangle.insert(triangle.end(), clusters.triangle.begin() + clusters.first[c],
+                        clusters.triangle.begin() + clusters.first[c + 1]);
     }
     begin.push_back(static_cast<std::uint32_t>(triangle.size()));
     for (Bv& bv : bvh.bvs) {

@@ -15,11 +15,15 @@ namespace {
 
 constexpr int kdop = 6;
 
-// p → R (p + S p + Q(p, p)) in units of the surface, R a rotation, S and Q small and random; value and Jacobian at each node.
-std::vector<AffineMap> synthetic_frame(std::span<const Vec3> node, const RestBox& box, double strength, std::mt19937_64& random)
+// p → R (p + S p + Q(p, p)) in units of the surface, R a rotation, S and Q small and random; value and Jacobian at each
+// node.
+std::vector<AffineMap> synthetic_frame(std::span<const Vec3> node, const RestBox& box, double strength,
+                                       std::mt19937_64& random)
 {
     const double unit = box.half.maxCoeff() > 0 ? box.half.maxCoeff() : 1;
-    auto uniform = [&](double most) { return most * (static_cast<double>(random() >> 11) * 0x1p-52 - 1); }; // the same everywhere
+    auto uniform = [&](double most) {
+        return most * (static_cast<double>(random() >> 11) * 0x1p-52 - 1);
+    }; // the same everywhere
     Eigen::Matrix3d strain, quadratic[3];
     for (int i = 0; i < 9; ++i)
         strain(i) = uniform(0.2);
@@ -65,7 +69,8 @@ Trial attempt(const PackedBvh<double>& packed, std::span<const ProjectedMaps<dou
     parallel_blocks(packed.bvs.size(), 64, [&](std::size_t first, std::size_t last) {
         for (std::size_t f = 0; f < frames.size(); ++f) {
             const auto supports = std::span(trial.supports).subspan(f * all + first * kdop, (last - first) * kdop);
-            bound_packed<double>({packed.bvs, packed.node, packed.value, &frames[f], Rounding::proven, 1}, first, last, scratch.local(), supports);
+            bound_packed<double>({packed.bvs, packed.node, packed.value, &frames[f], Rounding::proven, 1}, first, last,
+                                 scratch.local(), supports);
             for (std::size_t i = 0; i < supports.size(); ++i)
                 trial.width[first + i / kdop] += supports[i];
         }
@@ -74,20 +79,24 @@ Trial attempt(const PackedBvh<double>& packed, std::span<const ProjectedMaps<dou
 }
 
 // From the order of a packed tree without leaves to that of the BVs; leaves have nothing.
-template <class T> void spread(std::span<const std::uint32_t> place, const Bvh& bvh, std::size_t each, std::vector<T>& all)
+template <class T>
+void spread(std::span<const std::uint32_t> place, const Bvh& bvh, std::size_t each, std::vector<T>& all)
 {
     const std::size_t packed = all.size() / each;
     std::vector<T> out(bvh.bvs.size() * each, T(0));
     for (std::size_t i = 0; i < bvh.bvs.size(); ++i)
         if (!bvh.bvs[i].is_leaf() && place[i] < packed)
-            std::copy_n(all.begin() + static_cast<std::ptrdiff_t>(place[i] * each), each, out.begin() + static_cast<std::ptrdiff_t>(i * each));
+            std::copy_n(all.begin() + static_cast<std::ptrdiff_t>(place[i] * each), each,
+                        out.begin() + static_cast<std::ptrdiff_t>(i * each));
     all = std::move(out);
 }
 
 // The start of λ that suits each BV best, for one kind, and what comes of it.
-Trial calibrate(const Bvh& bvh, const DeformableSurface& surface, Method kind, std::span<const ProjectedMaps<double>> frames, std::vector<double>& start)
+Trial calibrate(const Bvh& bvh, const DeformableSurface& surface, Method kind,
+                std::span<const ProjectedMaps<double>> frames, std::vector<double>& start)
 {
-    PackedBvh<double> packed = pack<double>(bvh, surface, std::vector<ChosenKind>(bvh.bvs.size(), {kind, {}, 0, 0, false}), bvh.detail == RestDetail::all);
+    PackedBvh<double> packed = pack<double>(
+        bvh, surface, std::vector<ChosenKind>(bvh.bvs.size(), {kind, {}, 0, 0, false}), bvh.detail == RestDetail::all);
     const std::size_t bvs = packed.bvs.size();
     start.assign(bvs, 0.0);
     Trial best = attempt(packed, frames);
@@ -123,7 +132,8 @@ Trial calibrate(const Bvh& bvh, const DeformableSurface& surface, Method kind, s
 
 } // namespace
 
-std::vector<ChosenKind> choose_kinds(const Bvh& bvh, const DeformableSurface& surface, Method method, RestShape shape, KindPolicy policy)
+std::vector<ChosenKind> choose_kinds(const Bvh& bvh, const DeformableSurface& surface, Method method, RestShape shape,
+                                     KindPolicy policy)
 {
     const bool box_only = box_methods.contains(method);
     std::vector<ChosenKind> chosen(bvh.bvs.size(), {method, {}, 0, 0, box_only && shape == RestShape::obb});
@@ -134,7 +144,8 @@ std::vector<ChosenKind> choose_kinds(const Bvh& bvh, const DeformableSurface& su
     const std::vector<Vec3> place = node_places(surface);
     std::vector<ProjectedMaps<double>> frames;
     for (const double strength : {0.3, 0.3, 0.9, 0.9})
-        project<double>(synthetic_frame(place, root, strength, random), rest_extent(bvh, surface), kdop, Rounding::proven, frames.emplace_back());
+        project<double>(synthetic_frame(place, root, strength, random), rest_extent(bvh, surface), kdop,
+                        Rounding::proven, frames.emplace_back());
 
     if (method != Method::best) {
         std::vector<double> start;

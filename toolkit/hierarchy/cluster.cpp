@@ -8,12 +8,14 @@ namespace cinch {
 namespace {
 
 constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
-constexpr std::size_t most_of_a_fan = 32; // free triangles of a vertex that are looked at: keeps huge fans from taking quadratic time
+constexpr std::size_t most_of_a_fan =
+    32; // free triangles of a vertex that are looked at: keeps huge fans from taking quadratic time
 
 // The free triangles at every vertex.
 class Fans {
 public:
-    explicit Fans(const TriangleMesh& mesh) : free_(mesh.vertices.size(), 0), begin_(mesh.vertices.size() + 1, 0), triangle_(3 * mesh.triangles.size())
+    explicit Fans(const TriangleMesh& mesh)
+        : free_(mesh.vertices.size(), 0), begin_(mesh.vertices.size() + 1, 0), triangle_(3 * mesh.triangles.size())
     {
         for (const Triangle& t : mesh.triangles)
             for (std::uint32_t v : t)
@@ -51,8 +53,8 @@ private:
 class Grower {
 public:
     Grower(const TriangleMesh& mesh, const std::vector<std::uint32_t>& order, ClusterSize most)
-        : mesh_(mesh), order_(order), most_(most), fans_(mesh), taken_(mesh.triangles.size(), false), candidate_(mesh.triangles.size(), false),
-          inside_(mesh.vertices.size(), false)
+        : mesh_(mesh), order_(order), most_(most), fans_(mesh), taken_(mesh.triangles.size(), false),
+          candidate_(mesh.triangles.size(), false), inside_(mesh.vertices.size(), false)
     {
         centroid_.reserve(mesh.triangles.size());
         for (const Triangle& t : mesh.triangles)
@@ -135,9 +137,11 @@ private:
         if (best != none)
             return best;
         const std::uint32_t other = next_in_order();
-        return other != none && fits(other) && (centroid_[other] - mean).lpNorm<Eigen::Infinity>() <= reach_ ? other : none;
+        return other != none && fits(other) && (centroid_[other] - mean).lpNorm<Eigen::Infinity>() <= reach_ ? other
+                                                                                                             : none;
     }
-    // Where the next cluster begins: beside this one, where the fewest free triangles are left, so that no crumbs stay behind.
+    // Where the next cluster begins: beside this one, where the fewest free triangles are left, so that no crumbs stay
+    // behind.
     std::uint32_t free_neighbour() const
     {
         std::uint32_t best = none;

@@ -13,9 +13,10 @@ struct Clusters {
     std::size_t count() const { return first.size() - 1; }
 };
 
-/// Greedy by adjacency: each cluster grows by the neighbouring triangle that brings the fewest new vertices, and among those the
-/// nearest. Where none is left it takes the next one in `order` if that lies as near as its own triangles are large. `order` is a
-/// permutation of the triangles in which those near each other stand together. Deterministic; linear but for sorting.
+/// Greedy by adjacency: each cluster grows by the neighbouring triangle that brings the fewest new vertices, and among
+/// those the nearest. Where none is left it takes the next one in `order` if that lies as near as its own triangles are
+/// large. `order` is a permutation of the triangles in which those near each other stand together. Deterministic;
+/// linear but for sorting.
 Clusters cluster_triangles(const TriangleMesh& mesh, const std::vector<std::uint32_t>& order, ClusterSize most);
 
 } // namespace cinch

@@ -10,9 +10,9 @@
 #include <hwy/cache_control.h>
 
 #include "cinch/bounds.hpp"
+#include "cinch/environment.hpp"
 #include "toolkit/bounds/rounding.hpp"
 #include "toolkit/deform/parallel.hpp"
-#include "cinch/environment.hpp"
 #include "toolkit/surface/length.hpp"
 
 namespace cinch {
@@ -22,13 +22,19 @@ constexpr float last_stamp = 0x1p24f; // floats count by ones up to here
 constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr float most_known = 0x1p120f; // of a given position, relative to the origin: sums of a few do not overflow
 
-RefitOptions refit_options(const LazyOptions& o) { return {o.methods, o.kdop, Rounding::proven, o.precision, 1, o.rest_shape}; }
+RefitOptions refit_options(const LazyOptions& o)
+{
+    return {o.methods, o.kdop, Rounding::proven, o.precision, 1, o.rest_shape};
+}
 
 bool is_known(const AffineMap& map, const Vec3& absolute)
 {
     for (const auto& row : map.m) {
-        const double most = ((std::abs(row[0]) * absolute[0] + std::abs(row[1]) * absolute[1]) + std::abs(row[2]) * absolute[2]) + std::abs(row[3]);
-        if (!(most + std::abs(row[0]) + std::abs(row[1]) + std::abs(row[2]) < 0x1p1020)) // room for the sum over the nodes; false for NaN
+        const double most =
+            ((std::abs(row[0]) * absolute[0] + std::abs(row[1]) * absolute[1]) + std::abs(row[2]) * absolute[2]) +
+            std::abs(row[3]);
+        if (!(most + std::abs(row[0]) + std::abs(row[1]) + std::abs(row[2]) <
+              0x1p1020)) // room for the sum over the nodes; false for NaN
             return false;
     }
     return true;
@@ -60,8 +66,9 @@ LazyRefit::LazyRefit(const Bvh& bvh, const DeformableSurface& surface, const Laz
 std::size_t LazyRefit::bytes() const
 {
     auto size = [](const auto& all) { return all.capacity() * sizeof(all[0]); };
-    return bounder_.bytes() + leaves_.bytes() + size(links_) + size(triangle_) + size(influencing_) + size(dops_) + size(slots_) + size(slot_of_) + size(expanded_) +
-           size(before_) + size(wanted_) + size(jobs_) + size(wanted_leaves_);
+    return bounder_.bytes() + leaves_.bytes() + size(links_) + size(triangle_) + size(influencing_) + size(dops_) +
+           size(slots_) + size(slot_of_) + size(expanded_) + size(before_) + size(wanted_) + size(jobs_) +
+           size(wanted_leaves_);
 }
 
 void LazyRefit::begin(const BodyFrame& frame)
@@ -70,7 +77,9 @@ void LazyRefit::begin(const BodyFrame& frame)
     if (frame.positions.empty()) {
         const std::size_t unbounded = bounder_.begin(frame.maps);
         origin_ = bounder_.maps().origin;
-        known_ = unbounded == 0 || std::all_of(influencing_.begin(), influencing_.end(), [&](std::uint32_t j) { return is_known(frame.maps[j], bounder_.rest().absolute); });
+        known_ = unbounded == 0 || std::all_of(influencing_.begin(), influencing_.end(), [&](std::uint32_t j) {
+                     return is_known(frame.maps[j], bounder_.rest().absolute);
+                 });
     } else {
         begin_with(frame.positions);
     }
@@ -95,7 +104,8 @@ void LazyRefit::begin(const BodyFrame& frame)
     for (const std::uint32_t bv : before_)
         for (std::uint32_t c = links_[bv].child; c < links_[bv].child + 2; ++c)
             touched += links_[c].is_leaf();
-    full_ = !frame.positions.empty() || options_.update == Update::full || (options_.update == Update::automatic && 2 * touched > leaves_.leaves.size());
+    full_ = !frame.positions.empty() || options_.update == Update::full ||
+            (options_.update == Update::automatic && 2 * touched > leaves_.leaves.size());
     if (full_)
         return refit_all();
     if (!options_.keep_cut)
@@ -187,7 +197,9 @@ void LazyRefit::want_slot(std::uint32_t leaf)
 void LazyRefit::supply()
 {
     if (!wanted_.empty()) {
-        parallel_blocks(wanted_.size(), 64, [&](std::size_t first, std::size_t last) { bounder_.bound(std::span(wanted_).subspan(first, last - first), dops_.data()); });
+        parallel_blocks(wanted_.size(), 64, [&](std::size_t first, std::size_t last) {
+            bounder_.bound(std::span(wanted_).subspan(first, last - first), dops_.data());
+        });
         counts_.bounds += wanted_.size();
         wanted_.clear();
     }
@@ -195,7 +207,8 @@ void LazyRefit::supply()
         return;
     const std::size_t slot_floats = leaf_slot_floats(leaves_.lanes);
     if (slots_.size() < slots_used_ * slot_floats)
-        slots_.resize(std::min(std::max(2 * slots_.size(), slots_used_ * slot_floats), leaves_.leaves.size() * slot_floats));
+        slots_.resize(
+            std::min(std::max(2 * slots_.size(), slots_used_ * slot_floats), leaves_.leaves.size() * slot_floats));
     jobs_.clear();
     for (const auto& [bv, slot] : wanted_leaves_) {
         jobs_.push_back({links_[bv].child, slot == no_slot ? nullptr : slots_.data() + slot * slot_floats, dop(bv)});
@@ -204,13 +217,21 @@ void LazyRefit::supply()
     counts_.leaves += jobs_.size();
     if (!now_.positions.empty())
         return place_leaves();
-    const LeafInput input{leaves_.lanes, leaves_.leaves, leaves_.value.data(), bounder_.maps().value.data(), 4 * projected_rows(static_cast<std::size_t>(options_.kdop / 2)),
-                          options_.kdop, bounder_.maps().vertex_error};
-    parallel_blocks(jobs_.size(), 64, [&](std::size_t first, std::size_t last) { evaluate_leaves(input, std::span(jobs_).subspan(first, last - first)); });
+    const LeafInput input{leaves_.lanes,
+                          leaves_.leaves,
+                          leaves_.value.data(),
+                          bounder_.maps().value.data(),
+                          4 * projected_rows(static_cast<std::size_t>(options_.kdop / 2)),
+                          options_.kdop,
+                          bounder_.maps().vertex_error};
+    parallel_blocks(jobs_.size(), 64, [&](std::size_t first, std::size_t last) {
+        evaluate_leaves(input, std::span(jobs_).subspan(first, last - first));
+    });
     wanted_leaves_.clear();
 }
 
-// The leaves' vertices from the positions, relative to the first: (x − O) − R passes two roundings of doubles, and one to float.
+// The leaves' vertices from the positions, relative to the first: (x − O) − R passes two roundings of doubles, and one
+// to float.
 void LazyRefit::place_leaves()
 {
     const std::size_t lanes = leaves_.lanes, side = dop_side(options_.kdop);
@@ -227,14 +248,18 @@ void LazyRefit::place_leaves()
                 place.reference[r] = static_cast<float>(start[r] - origin_[r]);
                 out = std::max(out, std::abs(place.reference[r]));
             }
-            const std::uint8_t* const corner = reinterpret_cast<const std::uint8_t*>(leaves_.value.data() + leaf.first + LeafRun{lanes, leaf.nodes}.corners());
+            const std::uint8_t* const corner = reinterpret_cast<const std::uint8_t*>(
+                leaves_.value.data() + leaf.first + LeafRun{lanes, leaf.nodes}.corners());
             std::memcpy(slot + 3 * lanes, corner, 3 * lanes);
             for (std::size_t t = 0; t < lanes; ++t) { // every vertex is a corner
-                const Triangle& triangle = surface_.mesh.triangles[triangle_[leaf.first_triangle + std::min<std::size_t>(t, leaf.triangles - 1)]];
+                const Triangle& triangle =
+                    surface_.mesh
+                        .triangles[triangle_[leaf.first_triangle + std::min<std::size_t>(t, leaf.triangles - 1)]];
                 for (std::size_t c = 0; c < 3; ++c)
                     for (std::size_t r = 0; r < 3; ++r) {
                         const int row = static_cast<int>(r);
-                        const auto x = static_cast<float>((now_.positions[triangle[c]][row] - origin_[row]) - static_cast<double>(place.reference[r]));
+                        const auto x = static_cast<float>((now_.positions[triangle[c]][row] - origin_[row]) -
+                                                          static_cast<double>(place.reference[r]));
                         slot[r * lanes + corner[c * lanes + t]] = x;
                         far = std::max(far, std::abs(x));
                     }
@@ -261,7 +286,8 @@ void LazyRefit::place_leaves()
                 }
                 for (std::size_t r = 0; r < 3; ++r)
                     middle += static_cast<float>(axes[a][r]) * place.reference[r];
-                const float wider = succ(3 * place.error + 16 * unit_roundoff_of<float> * (far + out)); // sums of up to three pass 2 roundings
+                const float wider = succ(3 * place.error + 16 * unit_roundoff_of<float> *
+                                                               (far + out)); // sums of up to three pass 2 roundings
                 job.dop[a] = succ(succ(most + middle) + wider);
                 job.dop[side + a] = succ(succ(-least - middle) + wider);
             }

@@ -12,8 +12,8 @@
 namespace cinch {
 namespace {
 
-
-void pack_leaf(const DeformableSurface& surface, const Bvh& bvh, const Bv& bv, const std::vector<std::uint32_t>& vertices, const Vec3& origin, LeafSet& out)
+void pack_leaf(const DeformableSurface& surface, const Bvh& bvh, const Bv& bv,
+               const std::vector<std::uint32_t>& vertices, const Vec3& origin, LeafSet& out)
 {
     const std::size_t L = out.lanes;
     PackedLeaf leaf;
@@ -30,7 +30,8 @@ void pack_leaf(const DeformableSurface& surface, const Bvh& bvh, const Bv& bv, c
 
     // The heaviest first: its image of the pivot is the reference.
     const auto nodes = std::span(bvh.node).subspan(bv.first_influence, bv.influence_count);
-    const auto h = std::span(bvh.h).subspan(bv.first_influence, bv.influence_count), l = std::span(bvh.l).subspan(bv.first_influence, bv.influence_count);
+    const auto h = std::span(bvh.h).subspan(bv.first_influence, bv.influence_count),
+               l = std::span(bvh.l).subspan(bv.first_influence, bv.influence_count);
     std::vector<std::size_t> place(nodes.size()); // where each stands
     std::iota(place.begin(), place.end(), std::size_t{0});
     std::swap(place[0], place[static_cast<std::size_t>(std::max_element(h.begin(), h.end()) - h.begin())]);
@@ -49,8 +50,8 @@ void pack_leaf(const DeformableSurface& surface, const Bvh& bvh, const Bv& bv, c
     for (std::size_t lane = 0; lane < L; ++lane) {
         const std::uint32_t k = vertices[std::min(lane, vertices.size() - 1)];
         for (std::size_t r = 0; r < 3; ++r) {
-            // Two differences of doubles, then a rounding to float. An error of u|x| of the first where the origin is not 0, x the coordinate
-            // about it, may be more than one of the float: it goes to the reach.
+            // Two differences of doubles, then a rounding to float. An error of u|x| of the first where the origin is
+            // not 0, x the coordinate about it, may be more than one of the float: it goes to the reach.
             const int s = static_cast<int>(r);
             const double x = surface.mesh.vertices[k][s] - origin[s], y = x - pivot[s];
             value[r * L + lane] = static_cast<float>(y);
@@ -59,14 +60,17 @@ void pack_leaf(const DeformableSurface& surface, const Bvh& bvh, const Bv& bv, c
         }
         const Weights::Row row = surface.weights.of(k);
         for (std::size_t i = 0; i < row.node.size(); ++i) {
-            const auto j = static_cast<std::size_t>(std::lower_bound(nodes.begin(), nodes.end(), row.node[i]) - nodes.begin());
+            const auto j =
+                static_cast<std::size_t>(std::lower_bound(nodes.begin(), nodes.end(), row.node[i]) - nodes.begin());
             value[run.weights() + place[j] * L + lane] = static_cast<float>(row.weight[i]);
         }
     }
     for (std::size_t t = 0; t < L; ++t) {
-        const Triangle& triangle = surface.mesh.triangles[bvh.triangle[bv.first_triangle + std::min<std::size_t>(t, bv.triangle_count - 1)]];
+        const Triangle& triangle =
+            surface.mesh.triangles[bvh.triangle[bv.first_triangle + std::min<std::size_t>(t, bv.triangle_count - 1)]];
         for (std::size_t c = 0; c < 3; ++c)
-            corner[c * L + t] = static_cast<std::uint8_t>(std::find(vertices.begin(), vertices.end(), triangle[c]) - vertices.begin());
+            corner[c * L + t] =
+                static_cast<std::uint8_t>(std::find(vertices.begin(), vertices.end(), triangle[c]) - vertices.begin());
     }
     out.leaves.push_back(leaf);
 }
@@ -84,9 +88,11 @@ LeafSet pack_leaves(const Bvh& bvh, const DeformableSurface& surface, const Vec3
             continue;
         const auto vertices = vertices_of(surface, bvh, bv);
         if (std::max<std::size_t>(vertices.size(), bv.triangle_count) > lanes)
-            throw std::invalid_argument("pack_leaves: a leaf has more triangles or vertices than lanes; build_bvh(surface, ClusterSize) limits both");
+            throw std::invalid_argument("pack_leaves: a leaf has more triangles or vertices than lanes; "
+                                        "build_bvh(surface, ClusterSize) limits both");
         if (bv.influence_count > most_nodes_in_float) // the premise of evaluate_leaves
-            throw std::length_error("pack_leaves: a leaf has over 65,536 simulation nodes; give its vertices fewer influences");
+            throw std::length_error(
+                "pack_leaves: a leaf has over 65,536 simulation nodes; give its vertices fewer influences");
         pack_leaf(surface, bvh, bv, vertices, rest_origin, out);
     }
     out.value.shrink_to_fit();

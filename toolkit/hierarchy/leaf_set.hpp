@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "toolkit/deform/aligned.hpp"
 #include "cinch/bvh.hpp"
+#include "toolkit/deform/aligned.hpp"
 #include "toolkit/hierarchy/kernel/leaf_kernel.hpp"
 
 namespace cinch {
@@ -18,8 +18,8 @@ struct LeafSet {
     std::size_t bytes() const { return leaves.size() * sizeof(leaves[0]) + value.size() * sizeof(float); }
 };
 
-/// `rest_origin`: of the projected maps (RestExtent::origin); lanes: 4, 8 or 16. Throws std::invalid_argument for leaves that have not
-/// enough of them.
+/// `rest_origin`: of the projected maps (RestExtent::origin); lanes: 4, 8 or 16. Throws std::invalid_argument for
+/// leaves that have not enough of them.
 LeafSet pack_leaves(const Bvh& bvh, const DeformableSurface& surface, const Vec3& rest_origin, std::size_t lanes);
 
 /// The fewest lanes for leaves of that size.

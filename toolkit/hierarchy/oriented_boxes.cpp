@@ -11,8 +11,9 @@
 namespace cinch {
 namespace {
 
-// Along the eigenvectors Q of the covariance. x − c = Q Qᵀ(x − c) + (I − QQᵀ)(x − c), and Q is orthogonal to a few u: extents that are
-// 256u·|x − c|₁ larger than Qᵀ(x − c) as computed leave room for that, for the products and for rounding extent times axis.
+// Along the eigenvectors Q of the covariance. x − c = Q Qᵀ(x − c) + (I − QQᵀ)(x − c), and Q is orthogonal to a few u:
+// extents that are 256u·|x − c|₁ larger than Qᵀ(x − c) as computed leave room for that, for the products and for
+// rounding extent times axis.
 OrientedBox around(const TriangleMesh& mesh, std::span<const std::uint32_t> vertices, const RestBox& box)
 {
     OrientedBox out;

@@ -6,7 +6,6 @@
 #include <limits>
 #include <stdexcept>
 
-
 namespace cinch {
 namespace {
 
@@ -30,11 +29,15 @@ RestExtent rest_extent(const Bvh& bvh, const DeformableSurface& surface, RestSha
         return rest;
     rest.origin = rest_origin(bvh.bvs[0].box);
     for (const Bv& bv : bvh.bvs) {
-        // Room for rounding to float and for local boxes, which may reach past the BV's by their own; pivots lie inside.
-        rest.about_origin = rest.about_origin.cwiseMax(((bv.box.centre - rest.origin).cwiseAbs() + bv.box.half) * (1 + 0x1p-20));
+        // Room for rounding to float and for local boxes, which may reach past the BV's by their own; pivots lie
+        // inside.
+        rest.about_origin =
+            rest.about_origin.cwiseMax(((bv.box.centre - rest.origin).cwiseAbs() + bv.box.half) * (1 + 0x1p-20));
         if (shape == RestShape::obb)
-            rest.about_origin = rest.about_origin.cwiseMax(((bv.oriented.centre - rest.origin).cwiseAbs() + bv.oriented.axis[0].cwiseAbs() +
-                                                            bv.oriented.axis[1].cwiseAbs() + bv.oriented.axis[2].cwiseAbs()) * (1 + 0x1p-18));
+            rest.about_origin = rest.about_origin.cwiseMax(
+                ((bv.oriented.centre - rest.origin).cwiseAbs() + bv.oriented.axis[0].cwiseAbs() +
+                 bv.oriented.axis[1].cwiseAbs() + bv.oriented.axis[2].cwiseAbs()) *
+                (1 + 0x1p-18));
         rest.influences = std::max(rest.influences, static_cast<double>(bv.vertex_influences));
     }
     for (const Vec3& x : surface.mesh.vertices)
@@ -42,7 +45,8 @@ RestExtent rest_extent(const Bvh& bvh, const DeformableSurface& surface, RestSha
     return rest;
 }
 
-template <class T> PackedBvh<T> pack(const Bvh& bvh, const DeformableSurface& surface, std::span<const ChosenKind> kinds, bool leaves)
+template <class T>
+PackedBvh<T> pack(const Bvh& bvh, const DeformableSurface& surface, std::span<const ChosenKind> kinds, bool leaves)
 {
     PackedBvh<T> out;
     out.rest = rest_extent(bvh, surface, !kinds.empty() && kinds[0].oriented ? RestShape::obb : RestShape::aabb);
@@ -54,7 +58,10 @@ template <class T> PackedBvh<T> pack(const Bvh& bvh, const DeformableSurface& su
         if (wanted(i)) {
             if (!leaves)
                 out.place[i] = static_cast<std::uint32_t>(out.bvs.size());
-            pack_bv<T>(bvh.rest(i), x, out.rest, {kinds[i].kind, kinds[i].start, kinds[i].oriented ? &bvh.bvs[i].oriented : nullptr, kinds[i].guarded}, out);
+            pack_bv<T>(
+                bvh.rest(i), x, out.rest,
+                {kinds[i].kind, kinds[i].start, kinds[i].oriented ? &bvh.bvs[i].oriented : nullptr, kinds[i].guarded},
+                out);
         }
     for (std::size_t i = 0; i < bvh.bvs.size(); ++i)
         if (kinds[i].also && wanted(i)) {

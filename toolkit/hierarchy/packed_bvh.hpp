@@ -4,20 +4,22 @@
 #include <optional>
 #include <vector>
 
+#include "cinch/bvh.hpp"
 #include "toolkit/bounds/kernel/bound_kernel.hpp"
 #include "toolkit/bounds/pack_bv.hpp"
-#include "cinch/bvh.hpp"
 
 namespace cinch {
 
 /// What the kernels need of a Bvh, in T, each BV with one kind of bound. Stands alone: the Bvh may go.
-template <class T> struct PackedBvh : PackedBvs<T> { ///< bvs: as Bvh::bvs, then those that PackedBv::also and guard name
+template <class T> struct PackedBvh
+    : PackedBvs<T> {                  ///< bvs: as Bvh::bvs, then those that PackedBv::also and guard name
     std::vector<std::uint32_t> place; ///< without leaves: where in bvs each BV stands; else empty
     RestExtent rest;
 
     std::size_t bytes() const
     {
-        return this->bvs.size() * sizeof(PackedBv<T>) + (place.size() + this->node.size()) * sizeof(std::uint32_t) + this->value.size() * sizeof(T);
+        return this->bvs.size() * sizeof(PackedBv<T>) + (place.size() + this->node.size()) * sizeof(std::uint32_t) +
+               this->value.size() * sizeof(T);
     }
 };
 
@@ -30,8 +32,9 @@ struct ChosenKind {
     bool guarded = false;  ///< with an Eq. 12 in reserve (PackedBv::guard)
 };
 
-/// What `best` is chosen for. Two kinds take twice the time, and are worth it where their intersection has at most a share of the width of
-/// the better one. Refits are never clearly looser than Eq. 12; queries, which can look closer where it matters, have no guard.
+/// What `best` is chosen for. Two kinds take twice the time, and are worth it where their intersection has at most a
+/// share of the width of the better one. Refits are never clearly looser than Eq. 12; queries, which can look closer
+/// where it matters, have no guard.
 struct KindPolicy {
     double worth_twice;
     bool guarded;
@@ -41,14 +44,16 @@ inline constexpr KindPolicy for_refits{0.96, true}, for_queries{0.85, false};
 /// Coordinates of the packed rest data: any origin will do, but the same for all that share a frame's projected maps.
 RestExtent rest_extent(const Bvh& bvh, const DeformableSurface& surface, RestShape shape = RestShape::aabb);
 
-/// For convex, eq12, limited and linear that kind; for local and support that kind with λ begun where it did best on synthetic
-/// deformations; for `best` whichever of linear, support and local did best there, or two of them where that is worth the time.
-/// The deformations are random quadratic ones, each node moving as at the mean of the vertices it influences. Deterministic.
-std::vector<ChosenKind> choose_kinds(const Bvh& bvh, const DeformableSurface& surface, Method method, RestShape shape = RestShape::aabb,
-                                     KindPolicy policy = for_refits);
+/// For convex, eq12, limited and linear that kind; for local and support that kind with λ begun where it did best on
+/// synthetic deformations; for `best` whichever of linear, support and local did best there, or two of them where that
+/// is worth the time. The deformations are random quadratic ones, each node moving as at the mean of the vertices it
+/// influences. Deterministic.
+std::vector<ChosenKind> choose_kinds(const Bvh& bvh, const DeformableSurface& surface, Method method,
+                                     RestShape shape = RestShape::aabb, KindPolicy policy = for_refits);
 
 /// Rounds everything outward to T. Leaves are left out if they are not wanted. Throws std::length_error for a BV
 /// of more simulation nodes than most_nodes_in_float or most_nodes_in_double.
-template <class T> PackedBvh<T> pack(const Bvh& bvh, const DeformableSurface& surface, std::span<const ChosenKind> kinds, bool leaves = true);
+template <class T> PackedBvh<T> pack(const Bvh& bvh, const DeformableSurface& surface,
+                                     std::span<const ChosenKind> kinds, bool leaves = true);
 
 } // namespace cinch

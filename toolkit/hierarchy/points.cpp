@@ -13,8 +13,9 @@
 namespace cinch {
 namespace {
 
-// A net of directions: the points of a grid on the surface of the cube [−1, 1]³, scaled to integers, and the triangles between
-// them. A direction q in the cone of a triangle is Σ c_i u_i with c_i ≥ 0 and Σ c_i = |q|_∞, as every u_i has |u_i|_∞ = 1 on one face.
+// A net of directions: the points of a grid on the surface of the cube [−1, 1]³, scaled to integers, and the triangles
+// between them. A direction q in the cone of a triangle is Σ c_i u_i with c_i ≥ 0 and Σ c_i = |q|_∞, as every u_i has
+// |u_i|_∞ = 1 on one face.
 struct Net {
     static constexpr int cells = 4; // per half edge of the cube
     std::vector<Vec3> direction;    // in units of 1/cells
@@ -43,7 +44,8 @@ struct Net {
                             p[(axis + 2) % 3] = b;
                             return at(p[0], p[1], p[2]);
                         };
-                        const auto a = corner(i, j), b = corner(i + 1, j), c = corner(i, j + 1), d = corner(i + 1, j + 1);
+                        const auto a = corner(i, j), b = corner(i + 1, j), c = corner(i, j + 1),
+                                   d = corner(i + 1, j + 1);
                         triangle.push_back({a, b, d});
                         triangle.push_back({a, c, d});
                     }
@@ -58,9 +60,10 @@ struct Points {
 // More for large BVs, where the simulation nodes take the time anyway.
 std::size_t most_points(const Bv& bv) { return std::clamp<std::size_t>(bv.influence_count, 32, 64); }
 
-// At least ‖x − (a point of the hull)‖₂, by pairwise Frank-Wolfe from the nearest point of the hull; stops below `enough`. The
-// coefficients are made dyadic with sum exactly 1, so that the origin of the coordinates drops out and any end is valid. x and the
-// hull are off by u·m each, m = max |coordinate|, the sum of n products passes n + 1 roundings more, and the scaled norm 6.
+// At least ‖x − (a point of the hull)‖₂, by pairwise Frank-Wolfe from the nearest point of the hull; stops below
+// `enough`. The coefficients are made dyadic with sum exactly 1, so that the origin of the coordinates drops out and
+// any end is valid. x and the hull are off by u·m each, m = max |coordinate|, the sum of n products passes n + 1
+// roundings more, and the scaled norm 6.
 double distance_to_hull(const Vec3& x, std::span<const Vec3> hull, double enough, std::vector<double>& alpha)
 {
     alpha.assign(hull.size(), 0.0);
@@ -104,9 +107,9 @@ double distance_to_hull(const Vec3& x, std::span<const Vec3> hull, double enough
     return succ(length(x - sum) + (4 * (n + 8) * unit_roundoff * most + n * smallest_subnormal));
 }
 
-// Greedy: for every triangle of the net the best point p so far leaves max_i (h(u_i) − u_i·p), h the support of all vertices, which
-// bounds how far the hull of the points falls short of h in its cone. The next point is the extreme one along a corner of the worst
-// triangle. How far the vertices are from the hull then is the slack.
+// Greedy: for every triangle of the net the best point p so far leaves max_i (h(u_i) − u_i·p), h the support of all
+// vertices, which bounds how far the hull of the points falls short of h in its cone. The next point is the extreme one
+// along a corner of the worst triangle. How far the vertices are from the hull then is the slack.
 Points choose(const TriangleMesh& mesh, const Bv& bv, std::vector<std::uint32_t> vertices)
 {
     static const Net net;

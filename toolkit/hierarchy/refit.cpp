@@ -5,20 +5,20 @@
 #include <optional>
 #include <stdexcept>
 
-#include "toolkit/bounds/bound_vertex.hpp"
 #include "cinch/bounds.hpp"
+#include "cinch/environment.hpp"
+#include "toolkit/bounds/bound_vertex.hpp"
 #include "toolkit/bounds/rounding.hpp"
 #include "toolkit/deform/parallel.hpp"
 #include "toolkit/hierarchy/bounder.hpp"
-#include "cinch/environment.hpp"
 
 namespace cinch {
 namespace {
 
 constexpr std::size_t block = 64; // BVs per task
 
-void bound_from_vertices(const Bvh& bvh, const DeformableSurface& surface, std::span<const AffineMap> maps, const RefitOptions& options,
-                         std::span<double> supports)
+void bound_from_vertices(const Bvh& bvh, const DeformableSurface& surface, std::span<const AffineMap> maps,
+                         const RefitOptions& options, std::span<double> supports)
 {
     const auto k = static_cast<std::size_t>(options.kdop);
     const auto& mesh = surface.mesh;
@@ -57,7 +57,8 @@ struct Refitter::Parts {
     std::optional<Bounder> bounder; // none for the vertices alone
 };
 
-Refitter::Refitter(const Bvh& bvh, const DeformableSurface& surface, const RefitOptions& options) : parts_(new Parts{bvh, surface, options, {}})
+Refitter::Refitter(const Bvh& bvh, const DeformableSurface& surface, const RefitOptions& options)
+    : parts_(new Parts{bvh, surface, options, {}})
 {
     if (!is_kdop(options.kdop))
         throw std::invalid_argument("k must be " + kdop_names());
@@ -87,11 +88,13 @@ RefitReport Refitter::operator()(std::span<const AffineMap> maps, std::span<doub
     RefitReport report;
     if (p.bounder) {
         report.unbounded_nodes = p.bounder->begin(maps);
-        parallel_blocks(p.bvh.bvs.size(), block,
-                        [&](std::size_t first, std::size_t last) { p.bounder->bound(first, last, supports.subspan(first * k, (last - first) * k)); });
+        parallel_blocks(p.bvh.bvs.size(), block, [&](std::size_t first, std::size_t last) {
+            p.bounder->bound(first, last, supports.subspan(first * k, (last - first) * k));
+        });
     } else {
         std::fill(supports.begin(), supports.end(), infinite);
-        report.unbounded_nodes = static_cast<std::size_t>(std::count_if(maps.begin(), maps.end(), [](const AffineMap& map) { return !is_finite(map); }));
+        report.unbounded_nodes = static_cast<std::size_t>(
+            std::count_if(maps.begin(), maps.end(), [](const AffineMap& map) { return !is_finite(map); }));
     }
     if (p.options.methods.contains(Method::vertices))
         bound_from_vertices(p.bvh, p.surface, maps, p.options, supports);
@@ -99,8 +102,8 @@ RefitReport Refitter::operator()(std::span<const AffineMap> maps, std::span<doub
     return report;
 }
 
-RefitReport refit(const Bvh& bvh, const DeformableSurface& surface, std::span<const AffineMap> maps, const RefitOptions& options,
-                  std::span<double> supports)
+RefitReport refit(const Bvh& bvh, const DeformableSurface& surface, std::span<const AffineMap> maps,
+                  const RefitOptions& options, std::span<double> supports)
 {
     return Refitter(bvh, surface, options)(maps, supports);
 }

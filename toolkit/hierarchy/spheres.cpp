@@ -54,11 +54,14 @@ RestSpheres rest_spheres(const Bvh& bvh, const DeformableSurface& surface)
                 influences[j].node = bvh.node[bv.first_influence + j];
                 influences[j].mean = bvh.model[bv.first_influence + j].mean;
             }
-            each_vertex([&](SphereInfluence& j, double w, const Vec3& y) { j.moment += w * y / static_cast<double>(vertices.size()); });
+            each_vertex([&](SphereInfluence& j, double w, const Vec3& y) {
+                j.moment += w * y / static_cast<double>(vertices.size());
+            });
             each_vertex([&](SphereInfluence& j, double w, const Vec3& y) {
                 j.weight_spread = std::max(j.weight_spread, std::abs(w - j.mean)); // dyadic: exact
                 // y, the product, the difference and the norm pass fewer than 8 roundings.
-                const double spread = length(w * y - j.moment), slop = 16 * unit_roundoff * (w * y.lpNorm<1>() + j.moment.lpNorm<1>());
+                const double spread = length(w * y - j.moment),
+                             slop = 16 * unit_roundoff * (w * y.lpNorm<1>() + j.moment.lpNorm<1>());
                 j.moment_spread = std::max(j.moment_spread, succ(spread + slop));
             });
             for (std::uint32_t k : vertices) {

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "toolkit/bounds/bound_sphere.hpp"
 #include "cinch/bvh.hpp"
+#include "toolkit/bounds/bound_sphere.hpp"
 
 namespace cinch {
 

@@ -23,8 +23,9 @@ Eigen::Matrix3d pseudo_inverse(const Eigen::Matrix3d& covariance)
     return inverse;
 }
 
-// What a weight of this vertex adds to the model's residual and moment. δ = w − mean is exact, y is off by u|y|; a product of
-// gradient·y passes 5 roundings, so |ρ̂ − ρ| ≤ γ₅(|δ| + Σ|g_i y_i|) and underflow; 8u leaves room for the sum's own roundings.
+// What a weight of this vertex adds to the model's residual and moment. δ = w − mean is exact, y is off by u|y|; a
+// product of gradient·y passes 5 roundings, so |ρ̂ − ρ| ≤ γ₅(|δ| + Σ|g_i y_i|) and underflow; 8u leaves room for the
+// sum's own roundings.
 void include(WeightModel& model, double weight, const Vec3& y)
 {
     const double delta = weight - model.mean;
@@ -35,8 +36,9 @@ void include(WeightModel& model, double weight, const Vec3& y)
     model.residual = residual <= model.residual ? model.residual : residual; // NaN goes in
     for (int i = 0; i < 3; ++i) {
         const double product = std::abs(delta) * std::abs(y[i]); // two roundings
-        if (delta != 0 && y[i] != 0) // the product may vanish all the same
-            model.moment[i] = std::max(model.moment[i], succ(product + (4 * unit_roundoff * product + smallest_subnormal)));
+        if (delta != 0 && y[i] != 0)                             // the product may vanish all the same
+            model.moment[i] =
+                std::max(model.moment[i], succ(product + (4 * unit_roundoff * product + smallest_subnormal)));
     }
 }
 
@@ -44,7 +46,8 @@ void include(WeightModel& model, double weight, const Vec3& y)
 void include_in_ball(const Vec3& x, Bvh& bvh, std::size_t influence)
 {
     const Vec3 r = x - bvh.local[influence].centre;
-    const double most = r.lpNorm<Eigen::Infinity>(), distance = most > 0x1p-500 && most < 0x1p500 ? r.norm() : r.lpNorm<1>();
+    const double most = r.lpNorm<Eigen::Infinity>(),
+                 distance = most > 0x1p-500 && most < 0x1p500 ? r.norm() : r.lpNorm<1>();
     if (distance > 0)
         bvh.radius[influence] = std::max(bvh.radius[influence], succ(distance * (1 + 16 * unit_roundoff)));
 }
@@ -67,7 +70,8 @@ void fit(const DeformableSurface& surface, std::span<const std::uint32_t> vertic
         low = low.cwiseMin(surface.mesh.vertices[k]);
         high = high.cwiseMax(surface.mesh.vertices[k]);
     }
-    bv.pivot = bv.pivot.cwiseMax(low).cwiseMin(high); // inside whatever rounding did; on flat BVs exactly in their plane
+    bv.pivot =
+        bv.pivot.cwiseMax(low).cwiseMin(high); // inside whatever rounding did; on flat BVs exactly in their plane
     const double unit = bv.box.half.maxCoeff() > 0 ? bv.box.half.maxCoeff() : 1;
     std::vector<double> mean(nodes.size(), 0.0);
     std::vector<Vec3> cross(nodes.size(), Vec3::Zero());

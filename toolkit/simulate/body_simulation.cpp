@@ -10,10 +10,10 @@
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
 
+#include "cinch/environment.hpp"
 #include "toolkit/simulate/explicit_step.hpp"
 #include "toolkit/simulate/implicit_step.hpp"
 #include "toolkit/simulate/stream.hpp"
-#include "cinch/environment.hpp"
 
 namespace cinch {
 
@@ -23,7 +23,8 @@ constexpr double most_substeps = 1e6; // of one call
 double since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 } // namespace
 
-BodySimulation::BodySimulation(MeshlessBody body, std::optional<DeformableSurface> surface) : body_(std::move(body)), surface_(std::move(surface))
+BodySimulation::BodySimulation(MeshlessBody body, std::optional<DeformableSurface> surface)
+    : body_(std::move(body)), surface_(std::move(surface))
 {
     if (surface_ && surface_->weights.node_count != body_.size())
         throw std::invalid_argument("BodySimulation: the surface's weights are of other nodes");
@@ -118,9 +119,13 @@ Reference BodySimulation::fitted(const Field& u) const
     const Eigen::JacobiSVD<Mat3> svd(a, Eigen::ComputeFullU | Eigen::ComputeFullV);
     if (a.allFinite() && svd.singularValues()[0] > 0) {
         const Mat3 r = svd.matrixU() * svd.matrixV().transpose();
-        Mat3 turned = r.determinant() > 0 ? r : Mat3(svd.matrixU() * Vec3(1, 1, -1).asDiagonal() * svd.matrixV().transpose());
+        Mat3 turned =
+            r.determinant() > 0 ? r : Mat3(svd.matrixU() * Vec3(1, 1, -1).asDiagonal() * svd.matrixV().transpose());
         if (!(svd.singularValues()[1] > 1e-6 * svd.singularValues()[0])) // a line: by the least turn
-            turned = Eigen::Quaterniond::FromTwoVectors(reference_.rotation * svd.matrixV().col(0), svd.matrixU().col(0)).toRotationMatrix() * reference_.rotation;
+            turned =
+                Eigen::Quaterniond::FromTwoVectors(reference_.rotation * svd.matrixV().col(0), svd.matrixU().col(0))
+                    .toRotationMatrix() *
+                reference_.rotation;
         if ((turned - reference_.rotation).norm() > 0x1p-26)
             to.rotation = turned;
     }
@@ -142,7 +147,17 @@ Configuration BodySimulation::configure(const Field& u, double time_s, const Vec
 {
     for (std::size_t i = 0; i < body_.size(); ++i)
         at(from_origin_, i) = reference_.place(body_.rest[i]) + at(u, i);
-    const Configuration c{body_, surface_ ? &*surface_ : nullptr, reference_, from_origin_, u, gradient_, strain_, deformation_, plastic_inverse_, time_s, datum};
+    const Configuration c{body_,
+                          surface_ ? &*surface_ : nullptr,
+                          reference_,
+                          from_origin_,
+                          u,
+                          gradient_,
+                          strain_,
+                          deformation_,
+                          plastic_inverse_,
+                          time_s,
+                          datum};
     if (!needs_deformation_)
         return c;
     const auto start = Clock::now();
@@ -160,7 +175,8 @@ double BodySimulation::greatest_acceleration(const Field& force) const
     return most;
 }
 
-void BodySimulation::add_forces(const Configuration& c, Field& force, std::optional<std::size_t> only, double* greatest, double* applied)
+void BodySimulation::add_forces(const Configuration& c, Field& force, std::optional<std::size_t> only, double* greatest,
+                                double* applied)
 {
     if (needs_deformation_)
         stress_.assign(12 * body_.size(), 0);
@@ -228,7 +244,8 @@ void BodySimulation::begin_product(const Field& p, Field& out)
     for (std::size_t i = 0; i < body_.size(); ++i) {
         const Mat3 dj = matrix_at(change_, i);
         Mat3 dp;
-        Eigen::Map<Eigen::Matrix<double, 9, 1>>(dp.data()).noalias() = local_[i] * Eigen::Map<const Eigen::Matrix<double, 9, 1>>(dj.data());
+        Eigen::Map<Eigen::Matrix<double, 9, 1>>(dp.data()).noalias() =
+            local_[i] * Eigen::Map<const Eigen::Matrix<double, 9, 1>>(dj.data());
         matrix_at(stress_, i) = -dp;
     }
     shared_s_ += since(start);
@@ -317,7 +334,9 @@ StepReport BodySimulation::advance(double dt_s, const Integration& integration)
     }
     if (report.failure.empty())
         update_positions();
-    if (report.failure.empty() && !(whole(x_).allFinite() && whole(v_).allFinite() && std::all_of(plastic_inverse_.begin(), plastic_inverse_.end(), [](const Mat3& p) { return p.allFinite(); })))
+    if (report.failure.empty() &&
+        !(whole(x_).allFinite() && whole(v_).allFinite() &&
+          std::all_of(plastic_inverse_.begin(), plastic_inverse_.end(), [](const Mat3& p) { return p.allFinite(); })))
         report.failure = "positions are no longer finite";
     report.dt_s = dt_s;
     report.seconds = since(start);

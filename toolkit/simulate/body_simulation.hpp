@@ -18,11 +18,13 @@ namespace cinch {
 struct Integration {
     enum class Method { explicit_euler, implicit_euler };
     Method method = Method::implicit_euler;
-    double step_s = 1.0 / 60;  ///< of the implicit integrator; of the explicit one the longest substep
-    double safety = 0.6;       ///< explicit: share of the longest stable substep
-    double tolerance = 1e-5;   ///< implicit: greatest error of an acceleration that is left, over the greatest one (ImplicitStep)
+    double step_s = 1.0 / 60; ///< of the implicit integrator; of the explicit one the longest substep
+    double safety = 0.6;      ///< explicit: share of the longest stable substep
+    double tolerance =
+        1e-5; ///< implicit: greatest error of an acceleration that is left, over the greatest one (ImplicitStep)
     int most_iterations = 200; ///< implicit: of Newton's method
-    bool project = true;       ///< implicit: make the Hessian positive semidefinite where it proves not to be (off only in experiments)
+    bool project =
+        true; ///< implicit: make the Hessian positive semidefinite where it proves not to be (off only in experiments)
     Completion completion = Completion::on;
     bool (*cancelled)() = nullptr; ///< asked between steps; a cancelled call fails, and keeps the state before it
 };
@@ -31,14 +33,16 @@ struct Integration {
 struct StepReport {
     double dt_s = 0;
     int substeps = 0, iterations = 0, products = 0; ///< Newton iterations; products with the Hessian
-    int halved = 0;          ///< steps that were taken back and made in halves
-    int projected = 0;       ///< iterations that needed a positive semidefinite Hessian
-    double residual = 0;     ///< m/s², of the last step: the greatest error of an acceleration; 0 for the explicit integrator
+    int halved = 0;                                 ///< steps that were taken back and made in halves
+    int projected = 0;                              ///< iterations that needed a positive semidefinite Hessian
+    double residual =
+        0; ///< m/s², of the last step: the greatest error of an acceleration; 0 for the explicit integrator
     double acceleration = 0; ///< m/s², of the last step: what the tolerance was relative to
-    bool at_rounding = false; ///< the residual is what rounding leaves of forces inside the body that balance (ImplicitStep)
+    bool at_rounding =
+        false; ///< the residual is what rounding leaves of forces inside the body that balance (ImplicitStep)
     double kinetic = 0, potential = 0; ///< J, at the end
-    double seconds = 0;      ///< of wall time
-    std::string failure;     ///< why it could not be made; the state is that before it
+    double seconds = 0;                ///< of wall time
+    std::string failure;               ///< why it could not be made; the state is that before it
 };
 
 /// A body, its effects and its state.
@@ -95,18 +99,23 @@ private:
 
     /// At displacements u.
     Configuration configure(const Field& u, double time_s, const Vec3& datum = Vec3::Zero());
-    /// `greatest`, where given: is raised to the greatest acceleration, m/s², of a node that is not pinned by one effect, or by all
-    /// stresses together; `applied`: to that by one effect alone.
-    void add_forces(const Configuration& c, Field& force, std::optional<std::size_t> only = {}, double* greatest = nullptr, double* applied = nullptr);
+    /// `greatest`, where given: is raised to the greatest acceleration, m/s², of a node that is not pinned by one
+    /// effect, or by all stresses together; `applied`: to that by one effect alone.
+    void add_forces(const Configuration& c, Field& force, std::optional<std::size_t> only = {},
+                    double* greatest = nullptr, double* applied = nullptr);
     double greatest_acceleration(const Field& force) const;
-    /// The reference that fits displacements from the present one best, by mass; the present one where pins hold the body, so that
-    /// these stay where they are to the last bit. A turn by less than 2⁻²⁶ is left to the displacements: they are fine enough, and two
-    /// rotations of doubles differ by a strain of some u.
+    /// The reference that fits displacements from the present one best, by mass; the present one where pins hold the
+    /// body, so that these stay where they are to the last bit. A turn by less than 2⁻²⁶ is left to the displacements:
+    /// they are fine enough, and two rotations of doubles differ by a strain of some u.
     Reference fitted(const Field& u) const;
     /// Changes the reference; `fields`: displacements that are to stay where they are.
     void refer_to(const Reference& to, std::initializer_list<Field*> fields);
     void update_positions();
-    enum class Parts { all, stiffness, damping }; ///< of the second derivatives: all, of what does not dissipate, by velocity
+    enum class Parts {
+        all,
+        stiffness,
+        damping
+    }; ///< of the second derivatives: all, of what does not dissipate, by velocity
     /// With Parts::all, add_forces must have been called for the same configuration before.
     void assemble(const Configuration& c, Parts parts);
     /// out += −K p of what assemble() found; add_local_product leaves out what is not local to a node.
@@ -143,9 +152,9 @@ private:
     Field x_;     ///< positions in the world
     std::vector<Mat3> plastic_inverse_;
 
-    Field from_origin_; ///< scratch: positions from the reference's origin
+    Field from_origin_;                                             ///< scratch: positions from the reference's origin
     MatrixField gradient_, strain_, deformation_, stress_, change_; ///< scratch; empty unless some effect needs J
-    std::vector<double> spring_; ///< scratch; empty unless some effect has springs
+    std::vector<double> spring_;                                    ///< scratch; empty unless some effect has springs
     std::vector<Mat9> local_;
     std::vector<Mat3> block_;
     Field slow_mode_; ///< explicit: where the last power iteration ended

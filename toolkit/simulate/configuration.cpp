@@ -8,8 +8,9 @@
 namespace cinch {
 namespace {
 
-// The unit normal of (t + a, s + b) less that of (t, s), n: with w = (t + a) × (s + b) − n it is (w − n c) / (1 + c), 1 + c = ‖n + w‖,
-// c = (2 n·w + w²) / (‖n + w‖ + 1). Where t + a and s + b have collapsed to a line, any normal of it will do.
+// The unit normal of (t + a, s + b) less that of (t, s), n: with w = (t + a) × (s + b) − n it is (w − n c) / (1 + c), 1
+// + c = ‖n + w‖, c = (2 n·w + w²) / (‖n + w‖ + 1). Where t + a and s + b have collapsed to a line, any normal of it
+// will do.
 Vec3 normal_change(const Vec3& t, const Vec3& s, const Vec3& a, const Vec3& b)
 {
     const Vec3 n = t.cross(s), w = a.cross(s) + t.cross(b) + a.cross(b), there = n + w;
@@ -23,8 +24,8 @@ Vec3 normal_change(const Vec3& t, const Vec3& s, const Vec3& a, const Vec3& b)
     return (longer.squaredNorm() > 0 ? longer.unitOrthogonal() : Vec3::UnitZ()) - n;
 }
 
-// The least rotation from f, of length 1, to the direction of f + a, less I. With the axis v = f × g, g that direction, and cosine c:
-// [v] + [v]² / (1 + c).
+// The least rotation from f, of length 1, to the direction of f + a, less I. With the axis v = f × g, g that direction,
+// and cosine c: [v] + [v]² / (1 + c).
 Mat3 rotation_change(const Vec3& f, const Vec3& a)
 {
     const double size = (f + a).norm();
@@ -54,13 +55,16 @@ void complete(const MeshlessBody& body, MatrixField& strain, Completion completi
         const Mat3& frame = body.frame[d];
         auto h = matrix_at(strain, i);
         if (body.rank[i] == 2)
-            h += normal_change(frame.col(0), frame.col(1), h * frame.col(0), h * frame.col(1)) * frame.col(2).transpose();
+            h += normal_change(frame.col(0), frame.col(1), h * frame.col(0), h * frame.col(1)) *
+                 frame.col(2).transpose();
         else if (body.rank[i] == 1)
-            h += rotation_change(frame.col(0), h * frame.col(0)) * (Mat3::Identity() - frame.col(0) * frame.col(0).transpose());
+            h += rotation_change(frame.col(0), h * frame.col(0)) *
+                 (Mat3::Identity() - frame.col(0) * frame.col(0).transpose());
     }
 }
 
-void measure(const MeshlessBody& body, const Mat3& rotation, const Field& u, Completion completion, MatrixField& gradient, MatrixField& strain, MatrixField& deformation)
+void measure(const MeshlessBody& body, const Mat3& rotation, const Field& u, Completion completion,
+             MatrixField& gradient, MatrixField& strain, MatrixField& deformation)
 {
     gradient.resize(12 * body.size());
     strain.assign(12 * body.size(), 0);
@@ -82,7 +86,8 @@ void measure(const MeshlessBody& body, const Mat3& rotation, const Field& u, Com
     }
 }
 
-void complete_curvature(const MeshlessBody& body, const MatrixField& deformation, const MatrixField& stress, std::vector<Mat9>& local)
+void complete_curvature(const MeshlessBody& body, const MatrixField& deformation, const MatrixField& stress,
+                        std::vector<Mat9>& local)
 {
     for (std::size_t d = 0; d < body.deficient.size(); ++d) {
         const std::size_t i = body.deficient[d];
@@ -112,13 +117,15 @@ void complete_curvature(const MeshlessBody& body, const MatrixField& deformation
     }
 }
 
-std::vector<AffineMap> transforms(const MeshlessBody& body, const Reference& reference, const Field& u, const MatrixField& deformation, const Vec3& from)
+std::vector<AffineMap> transforms(const MeshlessBody& body, const Reference& reference, const Field& u,
+                                  const MatrixField& deformation, const Vec3& from)
 {
     std::vector<AffineMap> maps(body.size());
     const Vec3 origin = -reference.relative(from);
     for (std::size_t i = 0; i < body.size(); ++i) {
         const Mat3 j = matrix_at(deformation, i);
-        const Vec3 t = (origin - j * reference.centre) + (at(u, i) + (reference.rotation - j) * (body.rest[i] - reference.centre));
+        const Vec3 t =
+            (origin - j * reference.centre) + (at(u, i) + (reference.rotation - j) * (body.rest[i] - reference.centre));
         for (int r = 0; r < 3; ++r) {
             for (int c = 0; c < 3; ++c)
                 maps[i].m[r][c] = j(r, c);

@@ -12,12 +12,19 @@ namespace cinch {
 void ContactSearch::add(BodySimulation& body, BodyContact& contact)
 {
     const DeformableSurface& surface = *body.surface();
-    Member member{&body, &contact, TrianglesAround(surface.mesh), signed_volume(surface.mesh) < 0 ? -1.0 : 1.0, std::vector<double>(surface.mesh.vertices.size(), 0), {}, {}};
+    Member member{&body,
+                  &contact,
+                  TrianglesAround(surface.mesh),
+                  signed_volume(surface.mesh) < 0 ? -1.0 : 1.0,
+                  std::vector<double>(surface.mesh.vertices.size(), 0),
+                  {},
+                  {}};
     const auto& x = surface.mesh.vertices;
     for (const Triangle& t : surface.mesh.triangles)
         for (const std::uint32_t k : t)
             member.area[k] += (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]).norm() / 6;
-    collider_.add(build_bvh(surface, ClusterSize{16, 16}, RestDetail::inner), surface); // it keeps what it needs of the BVH
+    collider_.add(build_bvh(surface, ClusterSize{16, 16}, RestDetail::inner),
+                  surface); // it keeps what it needs of the BVH
     members_.push_back(std::move(member));
 }
 
@@ -43,7 +50,8 @@ void ContactSearch::find()
     for (const auto& [bodies, unused] : of_bodies)
         if (Member& member = members_[bodies.first]; member.position.empty()) {
             member.position.resize(member.area.size());
-            evaluate(member.body->surface()->mesh.vertices, member.body->surface()->weights, member.maps, member.position);
+            evaluate(member.body->surface()->mesh.vertices, member.body->surface()->weights, member.maps,
+                     member.position);
         }
     std::vector<std::vector<Contact>> contacts(members_.size());
     for (const auto& [bodies, meeting] : of_bodies)
@@ -52,13 +60,15 @@ void ContactSearch::find()
         members_[b].contact->set(std::move(contacts[b]), origin_);
 }
 
-void ContactSearch::part(std::uint32_t a, std::uint32_t b, const Pairs& pairs, std::vector<std::vector<Contact>>& out) const
+void ContactSearch::part(std::uint32_t a, std::uint32_t b, const Pairs& pairs,
+                         std::vector<std::vector<Contact>>& out) const
 {
     const Member &own = members_[a], &other = members_[b];
     for (const InsideVertex& v : find_inside(own.posed(), other.posed(), pairs)) {
         const Triangle& t = other.body->surface()->mesh.triangles[v.triangle];
         const Vec3& p = own.position[v.vertex];
-        const Vec3 q = v.share[0] * other.position[t[0]] + v.share[1] * other.position[t[1]] + v.share[2] * other.position[t[2]];
+        const Vec3 q =
+            v.share[0] * other.position[t[0]] + v.share[1] * other.position[t[1]] + v.share[2] * other.position[t[2]];
         const Vec3 n = (q - p).stableNormalized();
         const double stiffness = 0.5 * stiffness_ * own.area[v.vertex], middle = 0.5 * (n.dot(p) + n.dot(q));
         if (!(n.squaredNorm() > 0.5) || !(stiffness > 0)) // on the surface

@@ -10,10 +10,11 @@
 
 namespace cinch {
 
-/// Finds where several bodies run into each other, by Collider, and how they are to part: every vertex of one inside another (find_inside)
-/// goes half of the way to the closest point of that one's surface, and that point goes the other half. So forces are opposite and equal
-/// when a frame begins. The stiffness of a vertex is pressure per depth times its share of the surface at rest, half of it for either body.
-/// O(pairs) plus O(vertices) of the bodies that touch. A body wholly inside another, or a crossing of edges alone, is not seen.
+/// Finds where several bodies run into each other, by Collider, and how they are to part: every vertex of one inside
+/// another (find_inside) goes half of the way to the closest point of that one's surface, and that point goes the other
+/// half. So forces are opposite and equal when a frame begins. The stiffness of a vertex is pressure per depth times
+/// its share of the surface at rest, half of it for either body. O(pairs) plus O(vertices) of the bodies that touch. A
+/// body wholly inside another, or a crossing of edges alone, is not seen.
 class ContactSearch {
 public:
     /// `stiffness` in Pa/m.
@@ -21,7 +22,8 @@ public:
     ContactSearch(const ContactSearch&) = delete;
     ContactSearch& operator=(const ContactSearch&) = delete;
 
-    /// Both must stay where they are, and alive; the body must have a closed surface; its outside is where that makes its volume at rest positive.
+    /// Both must stay where they are, and alive; the body must have a closed surface; its outside is where that makes
+    /// its volume at rest positive.
     void add(BodySimulation& body, BodyContact& contact);
 
     /// For the bodies as they are; sets the contacts of each. The same for every thread count and history.
@@ -33,8 +35,8 @@ private:
         BodySimulation* body;
         BodyContact* contact;
         TrianglesAround around;
-        double outside;            ///< 1, or −1 where the surface is inside out
-        std::vector<double> area;  ///< of each vertex, at rest, m²
+        double outside;           ///< 1, or −1 where the surface is inside out
+        std::vector<double> area; ///< of each vertex, at rest, m²
         std::vector<AffineMap> maps;
         std::vector<Vec3> position; ///< of the vertices, while it touches others
 

@@ -10,8 +10,8 @@
 
 namespace cinch {
 
-/// What an effect adds its forces to. A force on node i is force_i, N. A stress P_i, Pa, of the node's volume v_i is added to
-/// stress_i as −v_i P_i, N m; it reaches the neighbours by the transpose of the gradient (scatter_stresses).
+/// What an effect adds its forces to. A force on node i is force_i, N. A stress P_i, Pa, of the node's volume v_i is
+/// added to stress_i as −v_i P_i, N m; it reaches the neighbours by the transpose of the gradient (scatter_stresses).
 /// A spring s_i pulls node i's neighbours to it by s_i w_ij (X_i − X_j), N, in the same pass.
 struct Forces {
     Field& force;
@@ -57,7 +57,8 @@ public:
     virtual void add_diagonal(const Configuration&, std::vector<Mat3>&) const {}
     /// Adds −∂f/∂v, as add_curvature: N s/m for what dissipates, for the explicit integrator's step.
     virtual void add_damping(const Configuration&, Curvature) const {}
-    /// The longest explicit step, s, that what it remembers allows: for what comes and goes between two looks at the stiffness.
+    /// The longest explicit step, s, that what it remembers allows: for what comes and goes between two looks at the
+    /// stiffness.
     virtual double longest_step(const Configuration&) const { return std::numeric_limits<double>::infinity(); }
     /// Called with every configuration that begins a step of length dt_s: for what lags behind.
     virtual void remember(const Configuration&, double dt_s) { (void)dt_s; }

@@ -8,8 +8,8 @@
 
 namespace cinch {
 
-// Of M⁻¹K (or M⁻¹C) on the nodes that move, by magnitude; 10 per cent up, as a power iteration comes from below. It begins where
-// the last one ended, with a tenth of noise, so that modes that are new have a share.
+// Of M⁻¹K (or M⁻¹C) on the nodes that move, by magnitude; 10 per cent up, as a power iteration comes from below. It
+// begins where the last one ended, with a tenth of noise, so that modes that are new have a share.
 double ExplicitStep::greatest_eigenvalue(const Configuration& c, int iterations, bool stiffness)
 {
     const std::size_t n = b_.body_.size();
@@ -24,7 +24,8 @@ double ExplicitStep::greatest_eigenvalue(const Configuration& c, int iterations,
         size = 1;
     for (std::size_t i = 0; i < 4 * n; ++i) {
         const double noise = i % 4 == 3 ? 0 : std::sin(0.7 + 12.9898 * static_cast<double>(i % 1009));
-        mode[i] = (std::isfinite(mode[i]) ? mode[i] / size : 0) + (fresh ? 1 : 0.1 / std::sqrt(static_cast<double>(3 * n))) * noise;
+        mode[i] = (std::isfinite(mode[i]) ? mode[i] / size : 0) +
+                  (fresh ? 1 : 0.1 / std::sqrt(static_cast<double>(3 * n))) * noise;
     }
     double value = 0;
     Field product(4 * n);
@@ -48,7 +49,8 @@ double ExplicitStep::greatest_eigenvalue(const Configuration& c, int iterations,
             next += b_.body_.mass[i] * image.squaredNorm();
             at(product, i) = image;
         }
-        value = std::max(value, std::sqrt(next)); // ‖M⁻¹K mode‖ in the norm in which the mode is 1; at most the eigenvalue
+        value =
+            std::max(value, std::sqrt(next)); // ‖M⁻¹K mode‖ in the norm in which the mode is 1; at most the eigenvalue
         if (!(next > 0) || !std::isfinite(next))
             return std::isfinite(next) ? 1.1 * value : std::numeric_limits<double>::infinity();
         mode = product;
@@ -61,7 +63,8 @@ double ExplicitStep::longest_stable(const Configuration& c)
     b_.assemble(c, BodySimulation::Parts::stiffness);
     const double squared = greatest_eigenvalue(c, 4, true);
     double damping = 0;
-    if (std::any_of(b_.effects_.begin(), b_.effects_.end(), [](const auto& slot) { return slot.effect->dissipates() || slot.effect->couples_nodes(); })) {
+    if (std::any_of(b_.effects_.begin(), b_.effects_.end(),
+                    [](const auto& slot) { return slot.effect->dissipates() || slot.effect->couples_nodes(); })) {
         b_.assemble(c, BodySimulation::Parts::damping);
         const Field mode = b_.slow_mode_;
         damping = greatest_eigenvalue(c, 16, false);
@@ -96,7 +99,8 @@ void ExplicitStep::advance(double dt_s, double longest_s, StepReport& report)
             short_enough = substep(dt);
         const bool finite = whole(b_.u_).allFinite() && whole(b_.v_).allFinite();
         stable = finite ? longest_stable(b_.configure(b_.u_, b_.time_s_)) : 0;
-        if ((!(dt <= 0.95 * stable) || !short_enough) && dt > 1e-7 * dt_s) { // where they lead, these steps are too long: take them back
+        if ((!(dt <= 0.95 * stable) || !short_enough) &&
+            dt > 1e-7 * dt_s) { // where they lead, these steps are too long: take them back
             const double too_long = dt;
             const Field mode = b_.slow_mode_;
             std::istringstream back(before.str());
@@ -134,7 +138,8 @@ bool ExplicitStep::substep(double dt)
     const double before = b_.time_s_;
     b_.time_s_ += dt;
     b_.finish(before, dt);
-    return std::all_of(b_.effects_.begin(), b_.effects_.end(), [&](const auto& slot) { return dt <= slot.effect->longest_step(c); });
+    return std::all_of(b_.effects_.begin(), b_.effects_.end(),
+                       [&](const auto& slot) { return dt <= slot.effect->longest_step(c); });
 }
 
 } // namespace cinch

@@ -5,15 +5,15 @@
 
 namespace cinch {
 
-/// Symplectic Euler: v += Δt f(x)/m, then x += Δt v, in substeps that a power iteration finds stable where they begin and where they
-/// end; those that are not are taken back and made shorter.
+/// Symplectic Euler: v += Δt f(x)/m, then x += Δt v, in substeps that a power iteration finds stable where they begin
+/// and where they end; those that are not are taken back and made shorter.
 class ExplicitStep {
 public:
     ExplicitStep(BodySimulation& body, const Integration& integration) : b_(body), integration_(integration) {}
     void advance(double dt_s, double longest_s, StepReport& report);
 
-    /// The longest stable substep, s: ω² Δt² + 2 c Δt ≤ 4 with ω² and c the greatest eigenvalues of M⁻¹K and M⁻¹C (damping acts
-    /// on the velocity of the step before). +∞ if nothing restores or resists.
+    /// The longest stable substep, s: ω² Δt² + 2 c Δt ≤ 4 with ω² and c the greatest eigenvalues of M⁻¹K and M⁻¹C
+    /// (damping acts on the velocity of the step before). +∞ if nothing restores or resists.
     double longest_stable(const Configuration& c);
 
 private:

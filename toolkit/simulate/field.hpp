@@ -12,7 +12,8 @@ namespace cinch {
 using Mat3 = Eigen::Matrix3d;
 using Mat9 = Eigen::Matrix<double, 9, 9>; ///< on 3×3 matrices stacked column by column
 
-/// A vector per simulation node, in records of 4 doubles whose last is 0, so that dot products may run over all of them.
+/// A vector per simulation node, in records of 4 doubles whose last is 0, so that dot products may run over all of
+/// them.
 using Field = AlignedVector<double>;
 /// A 3×3 matrix per simulation node: its columns in records of 4 doubles whose last is 0.
 using MatrixField = AlignedVector<double>;
@@ -26,6 +27,9 @@ inline MatrixAt matrix_at(MatrixField& f, std::size_t i) { return MatrixAt(f.dat
 inline ConstMatrixAt matrix_at(const MatrixField& f, std::size_t i) { return ConstMatrixAt(f.data() + 12 * i); }
 
 inline Eigen::Map<Eigen::VectorXd> whole(Field& f) { return {f.data(), static_cast<Eigen::Index>(f.size())}; }
-inline Eigen::Map<const Eigen::VectorXd> whole(const Field& f) { return {f.data(), static_cast<Eigen::Index>(f.size())}; }
+inline Eigen::Map<const Eigen::VectorXd> whole(const Field& f)
+{
+    return {f.data(), static_cast<Eigen::Index>(f.size())};
+}
 
 } // namespace cinch

@@ -74,7 +74,8 @@ bool is_behind(const PosedSurface& s, const Closest& at, const Vec3& p)
 
 } // namespace
 
-TrianglesAround::TrianglesAround(const TriangleMesh& mesh) : first_(mesh.vertices.size() + 1, 0), triangle_(3 * mesh.triangles.size())
+TrianglesAround::TrianglesAround(const TriangleMesh& mesh)
+    : first_(mesh.vertices.size() + 1, 0), triangle_(3 * mesh.triangles.size())
 {
     for (const Triangle& t : mesh.triangles)
         for (const std::uint32_t k : t)
@@ -87,7 +88,8 @@ TrianglesAround::TrianglesAround(const TriangleMesh& mesh) : first_(mesh.vertice
             triangle_[next[k]++] = t;
 }
 
-std::vector<InsideVertex> find_inside(const PosedSurface& a, const PosedSurface& b, std::span<const std::pair<std::uint32_t, std::uint32_t>> pairs)
+std::vector<InsideVertex> find_inside(const PosedSurface& a, const PosedSurface& b,
+                                      std::span<const std::pair<std::uint32_t, std::uint32_t>> pairs)
 {
     std::vector<bool> meets(a.mesh.triangles.size(), false);
     std::map<std::uint32_t, Closest> border; // corners of triangles that meet b

@@ -17,7 +17,10 @@ static_assert(std::endian::native == std::endian::little, "the file is little-en
 constexpr std::string_view magic = "cinchfrm";
 constexpr std::uint32_t version = 1;
 
-template <class T> void put(std::string& out, const T& value) { out.append(reinterpret_cast<const char*>(&value), sizeof value); }
+template <class T> void put(std::string& out, const T& value)
+{
+    out.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
 template <class T> T get(const std::string& bytes, std::size_t& place)
 {
     T value;
@@ -39,7 +42,10 @@ std::uint64_t checksum(std::string_view bytes, std::uint64_t before)
 }
 
 std::size_t FrameLayout::header_bytes() const { return 24 + 4 * nodes.size(); }
-std::size_t FrameLayout::frame_bytes() const { return 24 + 96 * std::accumulate(nodes.begin(), nodes.end(), std::size_t(0)); }
+std::size_t FrameLayout::frame_bytes() const
+{
+    return 24 + 96 * std::accumulate(nodes.begin(), nodes.end(), std::size_t(0));
+}
 
 std::string frame_header(const FrameLayout& layout)
 {
@@ -52,7 +58,8 @@ std::string frame_header(const FrameLayout& layout)
     return out;
 }
 
-std::string frame_record(const FrameLayout& layout, std::uint64_t frame, double time_s, std::span<const std::vector<AffineMap>> maps)
+std::string frame_record(const FrameLayout& layout, std::uint64_t frame, double time_s,
+                         std::span<const std::vector<AffineMap>> maps)
 {
     std::string out;
     out.reserve(layout.frame_bytes());
@@ -72,12 +79,14 @@ FrameFile read_frames(const std::filesystem::path& path)
         throw InputError::in_file(file, "is no file of frames");
     std::size_t place = magic.size();
     if (const auto found = get<std::uint32_t>(bytes, place); found != version)
-        throw InputError::in_file(file, "has version " + std::to_string(found) + "; this program reads " + std::to_string(version));
+        throw InputError::in_file(file, "has version " + std::to_string(found) + "; this program reads " +
+                                            std::to_string(version));
     FrameFile frames;
     const auto bodies = get<std::uint32_t>(bytes, place);
     frames.layout.frame_s = get<double>(bytes, place);
     if (!(frames.layout.frame_s > 0) || !std::isfinite(frames.layout.frame_s))
-        throw InputError::in_file(file, "declares " + std::to_string(frames.layout.frame_s) + " seconds from frame to frame");
+        throw InputError::in_file(file,
+                                  "declares " + std::to_string(frames.layout.frame_s) + " seconds from frame to frame");
     if (bytes.size() - place < std::size_t(4) * bodies)
         throw InputError::in_file(file, "ends within its header");
     for (std::uint32_t b = 0; b < bodies; ++b)

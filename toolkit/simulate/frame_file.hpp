@@ -35,10 +35,11 @@ struct FrameLayout {
 
 /// The bytes of the header, and of one frame; `maps` has one list per body.
 std::string frame_header(const FrameLayout& layout);
-std::string frame_record(const FrameLayout& layout, std::uint64_t frame, double time_s, std::span<const std::vector<AffineMap>> maps);
+std::string frame_record(const FrameLayout& layout, std::uint64_t frame, double time_s,
+                         std::span<const std::vector<AffineMap>> maps);
 
-/// All frames of such a file, one clip per body. A file that ends within a frame has the frames before it, and `cut_off` says so. Throws
-/// InputError for what is no such file or was changed.
+/// All frames of such a file, one clip per body. A file that ends within a frame has the frames before it, and
+/// `cut_off` says so. Throws InputError for what is no such file or was changed.
 struct FrameFile {
     FrameLayout layout;
     std::vector<Clip> bodies;
@@ -46,7 +47,8 @@ struct FrameFile {
 };
 FrameFile read_frames(const std::filesystem::path& path);
 
-/// FNV-1a, 64 bits; of all bytes before and these, given that of those before. A single changed byte always changes it: each step maps states one to one.
+/// FNV-1a, 64 bits; of all bytes before and these, given that of those before. A single changed byte always changes it:
+/// each step maps states one to one.
 inline constexpr std::uint64_t checksum_of_nothing = 0xcbf29ce484222325u;
 std::uint64_t checksum(std::string_view bytes, std::uint64_t before = checksum_of_nothing);
 

@@ -13,7 +13,7 @@
 namespace cinch {
 namespace {
 
-constexpr double unit = 0x1p-53; // of rounding
+constexpr double unit = 0x1p-53;     // of rounding
 constexpr double balanced = 0x1p-32; // see the header: of the forces inside a body
 
 std::string in_si(double acceleration)
@@ -40,14 +40,16 @@ void ImplicitStep::advance(double dt_s, double longest_s, StepReport& report)
     const double start = b_.time_s_;
     const auto pieces = static_cast<std::size_t>(std::max(1.0, std::ceil(dt_s / longest_s * (1 - 1e-12))));
     for (std::size_t s = 0; s < pieces; ++s) {
-        const double to = s + 1 == pieces ? start + dt_s : start + dt_s * static_cast<double>(s + 1) / static_cast<double>(pieces);
+        const double to =
+            s + 1 == pieces ? start + dt_s : start + dt_s * static_cast<double>(s + 1) / static_cast<double>(pieces);
         if (!step_without_gain(to, 0, report))
             return;
     }
 }
 
-// Implicit Euler damps, but where the energy is not convex a long step can come out with more than it began with: it is then made
-// in halves. Energies are compared at one time, so that forces that change with it do their work; pins that move do theirs.
+// Implicit Euler damps, but where the energy is not convex a long step can come out with more than it began with: it is
+// then made in halves. Energies are compared at one time, so that forces that change with it do their work; pins that
+// move do theirs.
 bool ImplicitStep::step_without_gain(double to, int depth, StepReport& report)
 {
     constexpr int most_halvings = 8;
@@ -78,8 +80,8 @@ bool ImplicitStep::step_without_gain(double to, int depth, StepReport& report)
     return true;
 }
 
-// Fits the reference to where the body would coast to. Returns the displacements there that keep the strain of now; none for a body
-// that pins hold.
+// Fits the reference to where the body would coast to. Returns the displacements there that keep the strain of now;
+// none for a body that pins hold.
 Field ImplicitStep::follow(double dt)
 {
     if (!b_.pins_.empty())
@@ -132,20 +134,23 @@ ImplicitStep::Accelerations ImplicitStep::gradient(const Configuration& c, doubl
     return a;
 }
 
-// What rounding does to E: u times the magnitudes that are summed, 16 operations each; and of every node the stress, at most its stiffness
-// times ‖H‖, times the error of H, at most 4 (n_k/2 + 16) u ‖H‖ as Σ_j ‖d_kj‖ ‖u_j − u_k‖ is at most 4 ‖H‖ about, and u after plastic flow.
+// What rounding does to E: u times the magnitudes that are summed, 16 operations each; and of every node the stress, at
+// most its stiffness times ‖H‖, times the error of H, at most 4 (n_k/2 + 16) u ‖H‖ as Σ_j ‖d_kj‖ ‖u_j − u_k‖ is at most
+// 4 ‖H‖ about, and u after plastic flow.
 double ImplicitStep::rounding_of(const Configuration& c, const Objective& e, double dt) const
 {
     double stresses = 0;
     for (std::size_t k = 0; k < b_.local_.size(); ++k) {
-        const double strain = matrix_at(c.strain, k).norm(), operations = 0.5 * (b_.body_.row[k + 1] - b_.body_.row[k]) + 16;
+        const double strain = matrix_at(c.strain, k).norm(),
+                     operations = 0.5 * (b_.body_.row[k + 1] - b_.body_.row[k]) + 16;
         stresses += b_.local_[k].norm() * strain * (4 * operations * strain + (c.plastic_inverse.empty() ? 0 : 32));
     }
     return unit * (16 * e.magnitude + dt * dt * stresses);
 }
 
-// m/s², see the header: the greatest error that rounding may leave in an acceleration. Beside the stresses there are the springs to
-// neighbours, forces that depend on the place in the world, and the inertia, each with an error of u of the lengths that it sees.
+// m/s², see the header: the greatest error that rounding may leave in an acceleration. Beside the stresses there are
+// the springs to neighbours, forces that depend on the place in the world, and the inertia, each with an error of u of
+// the lengths that it sees.
 double ImplicitStep::rounding_bound(const Configuration& c, double dt) const
 {
     const MeshlessBody& body = b_.body_;
@@ -153,17 +158,22 @@ double ImplicitStep::rounding_bound(const Configuration& c, double dt) const
     std::vector<double> size(n), force(n);
     for (std::size_t i = 0; i < n; ++i) {
         size[i] = at(c.u, i).norm();
-        force[i] = 4 * unit * (held_[i] * at(c.x, i).norm() + body.mass[i] * (size[i] + at(inertial_, i).norm()) / (dt * dt));
+        force[i] =
+            4 * unit * (held_[i] * at(c.x, i).norm() + body.mass[i] * (size[i] + at(inertial_, i).norm()) / (dt * dt));
     }
     for (std::size_t k = 0; k < b_.local_.size(); ++k) {
-        const double operations = 0.5 * (body.row[k + 1] - body.row[k]) + 8, spring = b_.spring_.empty() ? 0 : b_.spring_[k];
+        const double operations = 0.5 * (body.row[k + 1] - body.row[k]) + 8,
+                     spring = b_.spring_.empty() ? 0 : b_.spring_[k];
         double error = 0;
         for (std::uint32_t e = body.row[k]; e < body.row[k + 1]; ++e)
             error += body.d(e).norm() * (size[body.neighbour[e]] + size[k]);
-        const double stress = unit * b_.local_[k].norm() * (operations * error + 32 * (matrix_at(c.strain, k).norm() + (c.plastic_inverse.empty() ? 0 : 1)));
+        const double stress =
+            unit * b_.local_[k].norm() *
+            (operations * error + 32 * (matrix_at(c.strain, k).norm() + (c.plastic_inverse.empty() ? 0 : 1)));
         for (std::uint32_t e = body.row[k]; e < body.row[k + 1]; ++e) {
             const std::uint32_t j = body.neighbour[e];
-            const double pull = stress * body.d(e).norm() + operations * unit * spring * body.kernel(e) * (size[j] + size[k]);
+            const double pull =
+                stress * body.d(e).norm() + operations * unit * spring * body.kernel(e) * (size[j] + size[k]);
             force[j] += pull;
             force[k] += pull;
         }
@@ -175,8 +185,8 @@ double ImplicitStep::rounding_bound(const Configuration& c, double dt) const
     return most;
 }
 
-// m/s²: the greatest sum of the magnitudes of what single neighbours pull a node by, over its mass. Of the last gradient's stresses and
-// springs, as scatter_stresses() carries them.
+// m/s²: the greatest sum of the magnitudes of what single neighbours pull a node by, over its mass. Of the last
+// gradient's stresses and springs, as scatter_stresses() carries them.
 double ImplicitStep::greatest_pull(const Field& u) const
 {
     const MeshlessBody& body = b_.body_;
@@ -242,7 +252,8 @@ void ImplicitStep::precondition(const Configuration& c, double dt)
         const Mat3 whole_block = body.mass[i] * Mat3::Identity() + dt * dt * diagonal[i];
         const double scale = std::max(body.mass[i], std::abs(whole_block.trace()) / 3);
         const Mat3 m = whole_block / scale, inverse = m.inverse();
-        const bool positive = m(0, 0) > 0 && m.topLeftCorner<2, 2>().determinant() > 0 && m.determinant() > 0 && inverse.allFinite();
+        const bool positive =
+            m(0, 0) > 0 && m.topLeftCorner<2, 2>().determinant() > 0 && m.determinant() > 0 && inverse.allFinite();
         inverse_block_[i] = (positive ? inverse : Mat3(Mat3::Identity())) / scale;
     }
     arm_.clear();
@@ -265,7 +276,8 @@ void ImplicitStep::precondition(const Configuration& c, double dt)
     const Eigen::SelfAdjointEigenSolver<Mat3> eigen(inertia / scale);
     for (int k = 0; k < 3; ++k)
         if (eigen.eigenvalues()[k] > 1e-10) // a line has no inertia about itself
-            inverse_inertia_ += eigen.eigenvectors().col(k) * eigen.eigenvectors().col(k).transpose() / (scale * eigen.eigenvalues()[k]);
+            inverse_inertia_ += eigen.eigenvectors().col(k) * eigen.eigenvectors().col(k).transpose() /
+                                (scale * eigen.eigenvalues()[k]);
 }
 
 // The blocks' inverses, and for a free body the rigid motion that the residual's force and torque give it.
@@ -329,7 +341,8 @@ bool ImplicitStep::step(double dt, const Field& rigid, StepReport& report)
     }
     Field from = b_.u_;
     whole(inertial_) = whole(b_.u_) + dt * whole(b_.v_);
-    // Begin where the energy is least: where things are, where they would coast to, or where they would go without changing shape.
+    // Begin where the energy is least: where things are, where they would coast to, or where they would go without
+    // changing shape.
     Field still = b_.u_;
     b_.move_pins(still, time);
     b_.move_pins(inertial_, time);
@@ -361,7 +374,8 @@ bool ImplicitStep::step(double dt, const Field& rigid, StepReport& report)
             break;
         if (!std::isfinite(a.residual))
             return fail("forces are not finite");
-        const std::string short_of = "accelerations are off by " + in_si(a.residual) + ", where " + in_si(integration_.tolerance * a.greatest) + " are allowed";
+        const std::string short_of = "accelerations are off by " + in_si(a.residual) + ", where " +
+                                     in_si(integration_.tolerance * a.greatest) + " are allowed";
         if (trusted && !(a.residual < 0.5 * trusted_residual)) { // no longer any better
             const double bound = rounding_bound(c, dt);
             if (a.residual <= bound) {
@@ -373,7 +387,8 @@ bool ImplicitStep::step(double dt, const Field& rigid, StepReport& report)
                     continue;
                 }
                 const double pull = greatest_pull(u);
-                const bool at_rest = a.greatest * dt * dt <= unit * size_ || (std::max(a.greatest, pull) <= bound && a.applied <= balanced * a.residual);
+                const bool at_rest = a.greatest * dt * dt <= unit * size_ ||
+                                     (std::max(a.greatest, pull) <= bound && a.applied <= balanced * a.residual);
                 if (!(a.residual <= balanced * pull) && !at_rest)
                     return fail("rounding: " + short_of);
                 report.at_rounding = true;

@@ -12,13 +12,14 @@
 
 namespace cinch {
 
-/// The fields of a JSON object that know where they stand, so that every complaint names file and path. Fields that nobody asked for
-/// are complained about by finish().
+/// The fields of a JSON object that know where they stand, so that every complaint names file and path. Fields that
+/// nobody asked for are complained about by finish().
 class JsonFields {
 public:
     using Json = nlohmann::json;
 
-    JsonFields(const Json& json, std::string file, std::string path) : json_(&json), file_(std::move(file)), path_(std::move(path))
+    JsonFields(const Json& json, std::string file, std::string path)
+        : json_(&json), file_(std::move(file)), path_(std::move(path))
     {
         if (!json.is_object())
             fail("", "an object", json);
@@ -26,12 +27,17 @@ public:
 
     [[noreturn]] void fail(const std::string& key, const std::string& expected, const Json& found) const
     {
-        std::string text = found.is_array() ? "an array" : found.is_object() ? "an object" : found.dump(-1, ' ', true, Json::error_handler_t::replace);
+        std::string text = found.is_array()    ? "an array"
+                           : found.is_object() ? "an object"
+                                               : found.dump(-1, ' ', true, Json::error_handler_t::replace);
         if (text.size() > 60)
             text = text.substr(0, 57) + "...";
         complain(key, "expected " + expected + ", found " + text);
     }
-    [[noreturn]] void complain(const std::string& key, const std::string& what) const { throw InputError::in_file(file_, printable(place(key) + ": " + what)); }
+    [[noreturn]] void complain(const std::string& key, const std::string& what) const
+    {
+        throw InputError::in_file(file_, printable(place(key) + ": " + what));
+    }
 
     /// One line of printable characters, whatever the file has in its strings.
     static std::string printable(std::string text)
@@ -42,7 +48,10 @@ public:
         return text.size() > 400 ? text.substr(0, 397) + "..." : text;
     }
 
-    std::string place(const std::string& key) const { return key.empty() ? (path_.empty() ? "/" : path_) : path_ + "/" + key; }
+    std::string place(const std::string& key) const
+    {
+        return key.empty() ? (path_.empty() ? "/" : path_) : path_ + "/" + key;
+    }
     bool has(const std::string& key) const { return json_->contains(key); }
     const std::string& file() const { return file_; }
 
@@ -76,7 +85,8 @@ public:
         const Json* json = find(key);
         return json ? number_of(key, *json, range) : otherwise;
     }
-    std::size_t count(const std::string& key, std::size_t least, std::size_t most, std::optional<std::size_t> otherwise = {})
+    std::size_t count(const std::string& key, std::size_t least, std::size_t most,
+                      std::optional<std::size_t> otherwise = {})
     {
         const Json* json = otherwise ? find(key) : &need(key);
         return json ? count_of(key, *json, least, most) : *otherwise;

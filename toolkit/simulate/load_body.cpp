@@ -28,8 +28,8 @@ std::size_t nearest(std::span<const Vec3> places, const Vec3& p)
     return best;
 }
 
-// A point moves as the surface's nearest vertex does: by that vertex's blend of joint maps, between two frames of the clip. The places in
-// the two frames around the time asked for last are kept.
+// A point moves as the surface's nearest vertex does: by that vertex's blend of joint maps, between two frames of the
+// clip. The places in the two frames around the time asked for last are kept.
 class SkinPath {
 public:
     SkinPath(Clip clip, Weights skin, std::vector<Vec3> points, std::vector<std::uint32_t> vertices)
@@ -68,7 +68,8 @@ private:
             for (std::size_t e = 0; e < row.node.size(); ++e) {
                 const auto& m = maps[row.node[e]].m;
                 for (int r = 0; r < 3; ++r)
-                    kept.place[i][r] += row.weight[e] * (m[r][0] * point_[i][0] + m[r][1] * point_[i][1] + m[r][2] * point_[i][2] + m[r][3]);
+                    kept.place[i][r] += row.weight[e] * (m[r][0] * point_[i][0] + m[r][1] * point_[i][1] +
+                                                         m[r][2] * point_[i][2] + m[r][3]);
             }
         }
         kept.frame = frame;
@@ -89,7 +90,8 @@ private:
 
 bool is_character(const std::string& name) { return name.ends_with(".glb") || name.ends_with(".gltf"); }
 
-[[noreturn]] void complain(const std::string& file, const SceneBody& body, const std::string& field, const std::string& what)
+[[noreturn]] void complain(const std::string& file, const SceneBody& body, const std::string& field,
+                           const std::string& what)
 {
     throw InputError::in_file(file, body.path + "/" + field + ": " + what);
 }
@@ -106,7 +108,8 @@ MeshFile load_mesh(const SceneBody& body, const std::string& file, MeshCache& me
         std::string known;
         for (const std::string& name : shape_names())
             known += name + ", ";
-        complain(file, body, "surface", "'" + body.surface + "' is no shape (" + known + "box, sheet) and no mesh or character file");
+        complain(file, body, "surface",
+                 "'" + body.surface + "' is no shape (" + known + "box, sheet) and no mesh or character file");
     }
     MeshFile read = [&] {
         try {
@@ -170,7 +173,8 @@ LoadedBody load_body(const SceneBody& body, const std::string& file, MeshCache& 
         loaded.nodes = sampled.position;
         fill = sampled.fill_distance;
         if (sampled.position.size() < body.nodes)
-            loaded.notes.push_back("only " + std::to_string(sampled.position.size()) + " distinct places for simulation nodes");
+            loaded.notes.push_back("only " + std::to_string(sampled.position.size()) +
+                                   " distinct places for simulation nodes");
     } else {
         loaded.nodes = body.places.empty() ? lattice(body) : body.places;
         for (const Vec3& v : mesh.vertices)
@@ -179,10 +183,12 @@ LoadedBody load_body(const SceneBody& body, const std::string& file, MeshCache& 
     std::size_t alone = 0;
     loaded.surface.weights = kernel_weights(mesh, {loaded.nodes, fill}, 2, &alone);
     if (alone)
-        loaded.notes.push_back(std::to_string(alone) + " vertices lie beyond the reach of every simulation node; each follows its nearest one");
+        loaded.notes.push_back(std::to_string(alone) +
+                               " vertices lie beyond the reach of every simulation node; each follows its nearest one");
 
     if (body.surface == "box" || body.surface == "sheet") {
-        const double volume = body.box_m[0] * body.box_m[1] * (body.surface == "sheet" ? body.thickness_m : body.box_m[2]);
+        const double volume =
+            body.box_m[0] * body.box_m[1] * (body.surface == "sheet" ? body.thickness_m : body.box_m[2]);
         if (body.lattice[0] > 0)
             loaded.volume.assign(loaded.nodes.size(), volume / static_cast<double>(loaded.nodes.size()));
         loaded.total_volume = volume;
@@ -214,7 +220,8 @@ LoadedBody load_body(const SceneBody& body, const std::string& file, MeshCache& 
         } catch (const InputError& error) {
             complain(file, body, "clip", error.what());
         }
-        auto path = std::make_shared<SkinPath>(std::move(*clip), to_dyadic(character->influences), loaded.nodes, std::move(followed));
+        auto path = std::make_shared<SkinPath>(std::move(*clip), to_dyadic(character->influences), loaded.nodes,
+                                               std::move(followed));
         loaded.clip = [path](std::size_t node, double time_s) { return (*path)(node, time_s); };
     } else if (!body.clip.empty()) {
         complain(file, body, "clip", "only an animated character has clips");
@@ -222,8 +229,8 @@ LoadedBody load_body(const SceneBody& body, const std::string& file, MeshCache& 
     return loaded;
 }
 
-std::vector<std::uint32_t> select_nodes(const NodeSelection& selection, std::span<const Vec3> nodes, const std::string& file, const std::string& path,
-                                        const std::string& body)
+std::vector<std::uint32_t> select_nodes(const NodeSelection& selection, std::span<const Vec3> nodes,
+                                        const std::string& file, const std::string& path, const std::string& body)
 {
     std::vector<std::uint32_t> chosen;
     auto where = [&](auto&& inside) {
@@ -234,13 +241,16 @@ std::vector<std::uint32_t> select_nodes(const NodeSelection& selection, std::spa
     if (std::holds_alternative<EveryNode>(selection)) {
         where([](const Vec3&) { return true; });
     } else if (const auto* in_box = std::get_if<NodesInBox>(&selection)) {
-        where([&](const Vec3& p) { return (p.array() >= in_box->low.array()).all() && (p.array() <= in_box->high.array()).all(); });
+        where([&](const Vec3& p) {
+            return (p.array() >= in_box->low.array()).all() && (p.array() <= in_box->high.array()).all();
+        });
     } else if (const auto* ball = std::get_if<NodesInBall>(&selection)) {
         where([&](const Vec3& p) { return (p - ball->centre).norm() <= ball->radius; });
     } else if (const auto* index = std::get_if<NodesByIndex>(&selection)) {
         for (const std::uint32_t i : index->index) {
             if (i >= nodes.size())
-                throw InputError::in_file(file, path + "/nodes/index: body '" + body + "' has simulation nodes 0 to " + std::to_string(nodes.size() - 1) + ", not " + std::to_string(i));
+                throw InputError::in_file(file, path + "/nodes/index: body '" + body + "' has simulation nodes 0 to " +
+                                                    std::to_string(nodes.size() - 1) + ", not " + std::to_string(i));
             chosen.push_back(i);
         }
         std::sort(chosen.begin(), chosen.end());
@@ -248,7 +258,9 @@ std::vector<std::uint32_t> select_nodes(const NodeSelection& selection, std::spa
     } else if (const auto* near = std::get_if<NearestNodes>(&selection)) {
         std::vector<std::uint32_t> order(nodes.size());
         std::iota(order.begin(), order.end(), 0u);
-        std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return (nodes[a] - near->point).squaredNorm() < (nodes[b] - near->point).squaredNorm(); });
+        std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+            return (nodes[a] - near->point).squaredNorm() < (nodes[b] - near->point).squaredNorm();
+        });
         order.resize(std::min(order.size(), near->count));
         std::sort(order.begin(), order.end());
         chosen = order;

@@ -10,17 +10,17 @@
 #include <Eigen/LU>
 #include <Eigen/SVD>
 
+#include "cinch/environment.hpp"
 #include "toolkit/deform/parallel.hpp"
 #include "toolkit/deform/sample_nodes.hpp"
-#include "cinch/environment.hpp"
 #include "toolkit/surface/length.hpp"
 #include "toolkit/surface/triangle_mesh.hpp"
 
 namespace cinch {
 namespace {
 
-// An extent a thousandth of the greatest: moments 1e-6 of the greatest, below which the inverse would amplify noise (models of
-// the field call this the safe inversion).
+// An extent a thousandth of the greatest: moments 1e-6 of the greatest, below which the inverse would amplify noise
+// (models of the field call this the safe inversion).
 constexpr double flat = 1e-3;
 
 constexpr std::size_t most_neighbours = 400; // the nearest ones
@@ -38,7 +38,9 @@ std::vector<Near> by_distance(std::span<const Vec3> nodes, std::size_t i)
     for (std::size_t j = 0; j < nodes.size(); ++j)
         if (j != i)
             near.push_back({length(nodes[j] - nodes[i]), static_cast<std::uint32_t>(j)});
-    std::sort(near.begin(), near.end(), [](const Near& a, const Near& b) { return a.distance != b.distance ? a.distance < b.distance : a.node < b.node; });
+    std::sort(near.begin(), near.end(), [](const Near& a, const Near& b) {
+        return a.distance != b.distance ? a.distance < b.distance : a.node < b.node;
+    });
     return near;
 }
 
@@ -68,7 +70,8 @@ Neighbourhood within(std::span<const Vec3> nodes, std::size_t i, const std::vect
     return n;
 }
 
-// Müller et al. 2004: m_i = s r̄_i³ ρ, ρ_i = Σ_j m_j w_ij, v_i = m_i / ρ_i, s such that the densities are right on average.
+// Müller et al. 2004: m_i = s r̄_i³ ρ, ρ_i = Σ_j m_j w_ij, v_i = m_i / ρ_i, s such that the densities are right on
+// average.
 std::vector<double> density_volumes(const MeshlessBody& body, const std::vector<double>& mean_distance)
 {
     const std::size_t n = body.size();
@@ -118,8 +121,9 @@ MeshlessBody discretise(std::span<const Vec3> nodes, std::span<const double> vol
 {
     require_default_arithmetic();
     auto positive = [](double x) { return x > 0 && std::isfinite(x); };
-    if (nodes.empty() || !positive(options.support_factor) || options.nearest < 1 || !positive(options.density) || !(options.support_radius >= 0) ||
-        (!volume.empty() && volume.size() != nodes.size()) || !std::all_of(volume.begin(), volume.end(), positive) ||
+    if (nodes.empty() || !positive(options.support_factor) || options.nearest < 1 || !positive(options.density) ||
+        !(options.support_radius >= 0) || (!volume.empty() && volume.size() != nodes.size()) ||
+        !std::all_of(volume.begin(), volume.end(), positive) ||
         !std::all_of(nodes.begin(), nodes.end(), [](const Vec3& x) { return x.allFinite(); }))
         throw std::invalid_argument("discretise: at least one node, everything finite and positive is needed");
 
@@ -164,7 +168,8 @@ MeshlessBody discretise(std::span<const Vec3> nodes, std::span<const double> vol
         }
     }
     body.spacing = n > 1 ? *std::min_element(mean_distance.begin(), mean_distance.end()) : 0;
-    body.volume = volume.empty() ? density_volumes(body, mean_distance) : std::vector<double>(volume.begin(), volume.end());
+    body.volume =
+        volume.empty() ? density_volumes(body, mean_distance) : std::vector<double>(volume.begin(), volume.end());
     for (const double v : body.volume) {
         if (!positive(v) || !positive(options.density * v))
             throw std::invalid_argument("discretise: a node's volume or mass is no positive double");
@@ -173,13 +178,15 @@ MeshlessBody discretise(std::span<const Vec3> nodes, std::span<const double> vol
     if (coincident)
         body.notes.push_back(std::to_string(coincident) + " simulation nodes coincide with others");
     if (!body.deficient.empty())
-        body.notes.push_back(std::to_string(body.deficient.size()) + " simulation nodes have neighbours in a plane, on a line, or none");
+        body.notes.push_back(std::to_string(body.deficient.size()) +
+                             " simulation nodes have neighbours in a plane, on a line, or none");
     return body;
 }
 
 std::vector<double> cell_volumes(const TriangleMesh& mesh, std::span<const Vec3> nodes)
 {
-    const std::vector<Vec3> points = interior_points(mesh, std::clamp(200.0 * static_cast<double>(nodes.size()), 5e4, 3e5));
+    const std::vector<Vec3> points =
+        interior_points(mesh, std::clamp(200.0 * static_cast<double>(nodes.size()), 5e4, 3e5));
     const double enclosed = std::abs(signed_volume(mesh));
     if (points.empty() || !(enclosed > 0))
         return {};
@@ -199,7 +206,8 @@ std::vector<double> cell_volumes(const TriangleMesh& mesh, std::span<const Vec3>
         share[j] += 1;
     double sum = 0;
     for (double& s : share)
-        sum += s = std::max(s, 1.0); // a node that is nearest to no point of the grid: coincident ones, or finer than the grid
+        sum += s =
+            std::max(s, 1.0); // a node that is nearest to no point of the grid: coincident ones, or finer than the grid
     for (double& s : share)
         s *= enclosed / sum;
     return share;

@@ -22,7 +22,10 @@ double Turning::angle(double t) const
     return most > 0 ? std::clamp(a, -most, most) : a;
 }
 
-Vec3 Turning::apply(const Vec3& p, double t) const { return centre + Eigen::AngleAxisd(angle(t), axis.normalized()) * (p - centre); }
+Vec3 Turning::apply(const Vec3& p, double t) const
+{
+    return centre + Eigen::AngleAxisd(angle(t), axis.normalized()) * (p - centre);
+}
 
 Pin fixed_pin(std::vector<std::uint32_t> nodes, std::vector<Vec3> start)
 {
@@ -31,13 +34,18 @@ Pin fixed_pin(std::vector<std::uint32_t> nodes, std::vector<Vec3> start)
 
 Pin turning_pin(std::vector<std::uint32_t> nodes, std::vector<Vec3> start, const Turning& turning)
 {
-    return {std::move(nodes), [start = std::move(start), turning](std::size_t k, double t) { return turning.apply(start[k], t); },
+    return {std::move(nodes),
+            [start = std::move(start), turning](std::size_t k, double t) { return turning.apply(start[k], t); },
             [turning](double from, double to) { return std::abs(turning.angle(to) - turning.angle(from)); }};
 }
 
 Pin sliding_pin(std::vector<std::uint32_t> nodes, std::vector<Vec3> start, const Vec3& velocity, double end_s)
 {
-    return {std::move(nodes), [start = std::move(start), velocity, end_s](std::size_t k, double t) { return Vec3(start[k] + std::min(t, end_s) * velocity); }, no_turn};
+    return {std::move(nodes),
+            [start = std::move(start), velocity, end_s](std::size_t k, double t) {
+                return Vec3(start[k] + std::min(t, end_s) * velocity);
+            },
+            no_turn};
 }
 
 } // namespace cinch

@@ -12,8 +12,9 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr const char* name_characters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_."; // also of file names
-constexpr std::size_t most_nodes = 20000; // of a body
+constexpr const char* name_characters =
+    "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_."; // also of file names
+constexpr std::size_t most_nodes = 20000;                                // of a body
 constexpr JsonFields::Range length{1e-30, 1e30, false, "a number from 1e-30 to 1e30 (m)"};
 constexpr JsonFields::Range interval{1e-30, 1e30, false, "a number from 1e-30 to 1e30 (s)"};
 
@@ -36,7 +37,8 @@ NodeSelection read_nodes(JsonFields& parent, const std::string& key)
         NodesByIndex nodes;
         const Json& all = f.array("index");
         for (std::size_t i = 0; i < all.size(); ++i)
-            nodes.index.push_back(static_cast<std::uint32_t>(f.count_of("index/" + std::to_string(i), all[i], 0, 1u << 30)));
+            nodes.index.push_back(
+                static_cast<std::uint32_t>(f.count_of("index/" + std::to_string(i), all[i], 0, 1u << 30)));
         selection = nodes;
     } else if (f.has("nearest")) {
         const Vec3 point = f.vector("nearest");
@@ -168,9 +170,10 @@ What read_scripted(JsonFields& f)
 }
 
 constexpr Kind kinds[] = {
-    {"gravity", read_gravity},       {"pulling", read_pulling},       {"elastic", read_elastic},   {"volume", read_volume},
-    {"hourglass", read_hourglass},   {"plasticity", read_plasticity}, {"viscosity", read_viscosity}, {"damping", read_damping},
-    {"ground", read_ground},         {"contact", read_contact},       {"pinned", read_pinned},     {"scripted", read_scripted},
+    {"gravity", read_gravity},     {"pulling", read_pulling},     {"elastic", read_elastic},
+    {"volume", read_volume},       {"hourglass", read_hourglass}, {"plasticity", read_plasticity},
+    {"viscosity", read_viscosity}, {"damping", read_damping},     {"ground", read_ground},
+    {"contact", read_contact},     {"pinned", read_pinned},       {"scripted", read_scripted},
 };
 
 std::array<int, 3> read_cells(JsonFields& f, const std::string& key)
@@ -190,7 +193,8 @@ SceneBody read_body(const Json& json, const std::string& file, const std::string
     body.path = "/bodies/" + std::to_string(index);
     JsonFields f(json, file, body.path);
     body.name = f.text("name", "body-" + std::to_string(index));
-    if (body.name.empty() || body.name.size() > 64 || body.name[0] == '.' || body.name.find_first_not_of(name_characters) != std::string::npos)
+    if (body.name.empty() || body.name.size() > 64 || body.name[0] == '.' ||
+        body.name.find_first_not_of(name_characters) != std::string::npos)
         f.complain("name", "must be 1 to 64 letters, digits, '-', '_' or '.', not beginning with '.'");
     body.surface = f.text("surface");
     if (std::filesystem::path(body.surface).has_extension() && std::filesystem::path(body.surface).is_relative())
@@ -201,7 +205,9 @@ SceneBody read_body(const Json& json, const std::string& file, const std::string
             if (!(r == 2 && body.surface == "sheet" && body.box_m[r] == 0))
                 f.number_of("box/" + std::to_string(r), f.need("box")[static_cast<std::size_t>(r)], length);
         body.cells = read_cells(f, "cells");
-        if (double(body.cells[0]) * body.cells[1] + double(body.cells[1]) * body.cells[2] + double(body.cells[2]) * body.cells[0] > 1e6)
+        if (double(body.cells[0]) * body.cells[1] + double(body.cells[1]) * body.cells[2] +
+                double(body.cells[2]) * body.cells[0] >
+            1e6)
             f.complain("cells", "makes more than four million triangles");
         if (body.surface == "sheet")
             body.thickness_m = f.number("thickness", length);
@@ -260,13 +266,15 @@ Integration read_integration(JsonFields& scene, double frame_s)
     const std::string method = f.text("method", "implicit");
     if (method != "implicit" && method != "explicit")
         f.complain("method", "'" + method + "' is unknown; known are implicit, explicit");
-    integration.method = method == "explicit" ? Integration::Method::explicit_euler : Integration::Method::implicit_euler;
+    integration.method =
+        method == "explicit" ? Integration::Method::explicit_euler : Integration::Method::implicit_euler;
     integration.step_s = f.number("step", interval, integration.step_s);
     if (method == "explicit") {
         integration.safety = f.number("safety", {0, 1, true, "a number above 0 and at most 1"}, integration.safety);
     } else {
         integration.tolerance = f.number("tolerance", JsonFields::positive(), integration.tolerance);
-        integration.most_iterations = static_cast<int>(f.count("iterations", 1, 100000, static_cast<std::size_t>(integration.most_iterations)));
+        integration.most_iterations =
+            static_cast<int>(f.count("iterations", 1, 100000, static_cast<std::size_t>(integration.most_iterations)));
     }
     f.finish();
     return integration;
@@ -298,7 +306,8 @@ public:
         else if (event == Json::parse_event_t::object_end)
             keys_.pop_back();
         else if (event == Json::parse_event_t::key && !keys_.back().insert(parsed.get<std::string>()).second)
-            throw InputError::in_file(file_, JsonFields::printable("the key '" + parsed.get<std::string>() + "' stands twice in one object"));
+            throw InputError::in_file(
+                file_, JsonFields::printable("the key '" + parsed.get<std::string>() + "' stands twice in one object"));
         return true;
     }
 

@@ -7,9 +7,10 @@
 
 namespace cinch {
 
-/// Where a rigid copy of a body's rest shape stands: its own origin, and how it is turned. Node i is at origin + low + R (x_i − c) + u_i, and
-/// what is stored and solved for is the displacement u_i: forces come from differences of displacements, so that their rounding is
-/// relative to the strain, however stiff the body is, and wherever it has got to.
+/// Where a rigid copy of a body's rest shape stands: its own origin, and how it is turned. Node i is at origin + low +
+/// R (x_i − c) + u_i, and what is stored and solved for is the displacement u_i: forces come from differences of
+/// displacements, so that their rounding is relative to the strain, however stiff the body is, and wherever it has got
+/// to.
 struct Reference {
     Vec3 origin = Vec3::Zero(), low = Vec3::Zero(); ///< m; `low` holds what the doubles of `origin` cannot
     Mat3 rotation = Mat3::Identity();

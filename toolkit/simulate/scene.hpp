@@ -67,7 +67,7 @@ struct DampingSpec {
 struct GroundSpec {
     Ground ground;
 };
-struct ContactSpec { ///< of the bodies of its effect with each other
+struct ContactSpec {      ///< of the bodies of its effect with each other
     double stiffness = 0; ///< Pa/m
 };
 struct PinnedSpec {
@@ -82,29 +82,30 @@ struct ScriptedSpec { ///< axis and centre in the world
 };
 struct SceneEffect {
     std::vector<std::string> bodies; ///< names; empty: all
-    std::variant<GravitySpec, PullingForceSpec, PullingTargetSpec, ElasticSpec, VolumeSpec, HourglassSpec, PlasticitySpec, ViscositySpec, DampingSpec,
-                 GroundSpec, ContactSpec, PinnedSpec, ScriptedSpec>
+    std::variant<GravitySpec, PullingForceSpec, PullingTargetSpec, ElasticSpec, VolumeSpec, HourglassSpec,
+                 PlasticitySpec, ViscositySpec, DampingSpec, GroundSpec, ContactSpec, PinnedSpec, ScriptedSpec>
         what;
     std::string path; ///< in the file, for messages
 };
 
 struct SceneBody {
     std::string name;
-    std::string surface;         ///< a shape, "box", "sheet", a mesh file, or a character
-    double size_m = 0;           ///< longest half-extent; 0: as the file has it
-    Vec3 box_m = Vec3::Ones();   ///< of a box or sheet (z = 0)
-    std::array<int, 3> cells = {1, 1, 1}; ///< of its surface
-    std::size_t nodes = 0;       ///< sampled in the volume, or
+    std::string surface;                    ///< a shape, "box", "sheet", a mesh file, or a character
+    double size_m = 0;                      ///< longest half-extent; 0: as the file has it
+    Vec3 box_m = Vec3::Ones();              ///< of a box or sheet (z = 0)
+    std::array<int, 3> cells = {1, 1, 1};   ///< of its surface
+    std::size_t nodes = 0;                  ///< sampled in the volume, or
     std::array<int, 3> lattice = {0, 0, 0}; ///< at the centres of a box's cells, or
-    std::vector<Vec3> places;    ///< given
+    std::vector<Vec3> places;               ///< given
     std::uint64_t seed = 0;
     MeshlessOptions meshless;
     bool volume_by_density = false;
-    double thickness_m = 0;      ///< of a sheet
-    Vec3 position = Vec3::Zero(), axis = Vec3::UnitZ(), velocity = Vec3::Zero(), spin = Vec3::Zero(); ///< m, –, m/s, rad/s
+    double thickness_m = 0; ///< of a sheet
+    Vec3 position = Vec3::Zero(), axis = Vec3::UnitZ(), velocity = Vec3::Zero(),
+         spin = Vec3::Zero(); ///< m, –, m/s, rad/s
     double angle_deg = 0;
-    std::string clip;            ///< of a character; empty: its first
-    std::string path;            ///< in the file, for messages
+    std::string clip; ///< of a character; empty: its first
+    std::string path; ///< in the file, for messages
 };
 
 struct Scene {
@@ -115,8 +116,9 @@ struct Scene {
     std::vector<SceneEffect> effects;
 };
 
-/// A scene from JSON text in the layout of data/scenes/schema.json. `file` is for messages. Throws InputError naming file and the path of
-/// the wrong field (like /effects/2/young) and what was expected. Relative file names in it are taken from `folder`.
+/// A scene from JSON text in the layout of data/scenes/schema.json. `file` is for messages. Throws InputError naming
+/// file and the path of the wrong field (like /effects/2/young) and what was expected. Relative file names in it are
+/// taken from `folder`.
 Scene parse_scene(std::string_view text, const std::string& file, const std::string& folder);
 
 /// Names of all effects that a scene can name, in the order in which they are listed.

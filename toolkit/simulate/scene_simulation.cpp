@@ -85,6 +85,9 @@ void SceneSimulation::advance()
             throw std::runtime_error(std::to_string(time_s()) + " s, body '" + name(b) + "': " + reports[b].failure);
 }
 
-std::vector<AffineMap> SceneSimulation::transforms(std::size_t body) const { return parts_->simulation.bodies().at(body).simulation.frame(); }
+std::vector<AffineMap> SceneSimulation::transforms(std::size_t body) const
+{
+    return parts_->simulation.bodies().at(body).simulation.frame();
+}
 
 } // namespace cinch

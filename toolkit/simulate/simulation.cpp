@@ -9,11 +9,11 @@
 
 #include <Eigen/Geometry>
 
+#include "cinch/environment.hpp"
+#include "cinch/surface.hpp"
 #include "toolkit/deform/parallel.hpp"
 #include "toolkit/simulate/load_body.hpp"
 #include "toolkit/simulate/stream.hpp"
-#include "cinch/environment.hpp"
-#include "cinch/surface.hpp"
 
 namespace cinch {
 namespace {
@@ -22,7 +22,8 @@ namespace {
 class Builder {
 public:
     /// `start`: where the nodes begin, seen from `origin`.
-    Builder(const Scene& scene, const SceneBody& body, const std::string& file, const LoadedBody& loaded, const Field& start, const Vec3& origin, BodySimulation& out)
+    Builder(const Scene& scene, const SceneBody& body, const std::string& file, const LoadedBody& loaded,
+            const Field& start, const Vec3& origin, BodySimulation& out)
         : scene_(scene), body_(body), file_(file), loaded_(loaded), start_(start), origin_(origin), out_(out)
     {
     }
@@ -38,10 +39,14 @@ public:
 private:
     bool is_mine(const SceneEffect& effect) const
     {
-        return effect.bodies.empty() || std::find(effect.bodies.begin(), effect.bodies.end(), body_.name) != effect.bodies.end();
+        return effect.bodies.empty() ||
+               std::find(effect.bodies.begin(), effect.bodies.end(), body_.name) != effect.bodies.end();
     }
     [[noreturn]] void complain(const std::string& what) const { throw InputError::in_file(file_, path_ + ": " + what); }
-    std::vector<std::uint32_t> select(const NodeSelection& nodes) const { return select_nodes(nodes, out_.body().rest, file_, path_, body_.name); }
+    std::vector<std::uint32_t> select(const NodeSelection& nodes) const
+    {
+        return select_nodes(nodes, out_.body().rest, file_, path_, body_.name);
+    }
     std::vector<Vec3> starts(const std::vector<std::uint32_t>& nodes) const
     {
         std::vector<Vec3> places;
@@ -71,7 +76,8 @@ private:
     {
         for (const std::uint32_t i : made.nodes) {
             if (std::find(pinned_.begin(), pinned_.end(), i) != pinned_.end())
-                complain("simulation node " + std::to_string(i) + " of body '" + body_.name + "' is pinned or scripted already");
+                complain("simulation node " + std::to_string(i) + " of body '" + body_.name +
+                         "' is pinned or scripted already");
             pinned_.push_back(i);
         }
         out_.add(std::move(made));
@@ -105,7 +111,10 @@ private:
             out_.add(make_stvk(s.young, s.poisson, s.model == ElasticSpec::Model::stvk_paper));
     }
     void add(const VolumeSpec& s) { out_.add(make_volume(s.stiffness)); }
-    void add(const HourglassSpec& s) { out_.add(make_hourglass(out_.body(), s.alpha, s.young > 0 ? s.young : elastic_young())); }
+    void add(const HourglassSpec& s)
+    {
+        out_.add(make_hourglass(out_.body(), s.alpha, s.young > 0 ? s.young : elastic_young()));
+    }
     void add(const PlasticitySpec& s) { out_.add(make_plasticity(s.flow)); }
     void add(const ViscositySpec& s) { out_.add(make_viscosity(s.viscosity)); }
     void add(const DampingSpec& s) { out_.add(make_mass_damping(s.rate)); }
@@ -147,7 +156,8 @@ private:
 bool follows_clip(const Scene& scene, const SceneBody& body)
 {
     for (const SceneEffect& effect : scene.effects) {
-        const bool mine = effect.bodies.empty() || std::find(effect.bodies.begin(), effect.bodies.end(), body.name) != effect.bodies.end();
+        const bool mine = effect.bodies.empty() ||
+                          std::find(effect.bodies.begin(), effect.bodies.end(), body.name) != effect.bodies.end();
         const auto* pull = std::get_if<PullingTargetSpec>(&effect.what);
         const auto* script = std::get_if<ScriptedSpec>(&effect.what);
         if (mine && ((pull && pull->clip) || (script && script->clip)))
@@ -156,15 +166,18 @@ bool follows_clip(const Scene& scene, const SceneBody& body)
     return false;
 }
 
-std::unique_ptr<ContactSearch> search_contacts(const SceneEffect& effect, const ContactSpec& spec, std::vector<Simulation::Body>& bodies, const std::string& file)
+std::unique_ptr<ContactSearch> search_contacts(const SceneEffect& effect, const ContactSpec& spec,
+                                               std::vector<Simulation::Body>& bodies, const std::string& file)
 {
     auto search = std::make_unique<ContactSearch>(spec.stiffness);
     std::size_t members = 0;
     for (Simulation::Body& body : bodies) {
-        if (!effect.bodies.empty() && std::find(effect.bodies.begin(), effect.bodies.end(), body.name) == effect.bodies.end())
+        if (!effect.bodies.empty() &&
+            std::find(effect.bodies.begin(), effect.bodies.end(), body.name) == effect.bodies.end())
             continue;
         if (!body.simulation.surface())
-            throw InputError::in_file(file, effect.path + ": body '" + body.name + "' has no surface to touch others with");
+            throw InputError::in_file(file,
+                                      effect.path + ": body '" + body.name + "' has no surface to touch others with");
         auto contact = std::make_unique<BodyContact>();
         search->add(body.simulation, *contact);
         body.simulation.add(std::move(contact));
@@ -202,7 +215,8 @@ Simulation::Simulation(Scene scene, const std::string& file) : scene_(std::move(
         notes.insert(notes.end(), body.notes.begin(), body.notes.end());
         const std::size_t n = body.size();
         Field x(4 * n, 0), v(4 * n, 0);
-        const Mat3 r = Eigen::AngleAxisd(spec.angle_deg * std::numbers::pi / 180, spec.axis.normalized()).toRotationMatrix();
+        const Mat3 r =
+            Eigen::AngleAxisd(spec.angle_deg * std::numbers::pi / 180, spec.axis.normalized()).toRotationMatrix();
         const bool clipped = follows_clip(scene_, spec) && loaded.clip;
         const Vec3 origin = clipped ? Vec3::Zero() : spec.position;
         for (std::size_t i = 0; i < n; ++i) {
@@ -222,14 +236,18 @@ Simulation::Simulation(Scene scene, const std::string& file) : scene_(std::move(
             contacts_.push_back(search_contacts(effect, *spec, bodies_, file));
 }
 
-std::size_t Simulation::frame_count() const { return static_cast<std::size_t>(std::floor(scene_.duration_s / scene_.frame_s + 1e-9)) + 1; }
+std::size_t Simulation::frame_count() const
+{
+    return static_cast<std::size_t>(std::floor(scene_.duration_s / scene_.frame_s + 1e-9)) + 1;
+}
 
 std::vector<std::string> Simulation::notes() const
 {
     std::vector<std::pair<std::string, std::size_t>> counted;
     for (const Body& body : bodies_)
         for (const std::string& note : body.notes) {
-            const auto known = std::find_if(counted.begin(), counted.end(), [&](const auto& c) { return c.first == note; });
+            const auto known =
+                std::find_if(counted.begin(), counted.end(), [&](const auto& c) { return c.first == note; });
             if (known == counted.end())
                 counted.emplace_back(note, 1);
             else

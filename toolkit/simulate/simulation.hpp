@@ -15,12 +15,12 @@ public:
         std::vector<std::string> notes; ///< what a user should know of how it was set up
     };
 
-    /// Loads surfaces, samples nodes, constructs the effects that the scene names. Throws InputError, naming file and path, for what
-    /// cannot be: missing files, selections without nodes, effects that need what is not there.
+    /// Loads surfaces, samples nodes, constructs the effects that the scene names. Throws InputError, naming file and
+    /// path, for what cannot be: missing files, selections without nodes, effects that need what is not there.
     Simulation(Scene scene, const std::string& file);
 
-    /// From one frame to the next. Where the scene names contacts between bodies, these are found first, and hold for the frame; then
-    /// bodies are independent of each other, and run in parallel. The same bits for any thread count.
+    /// From one frame to the next. Where the scene names contacts between bodies, these are found first, and hold for
+    /// the frame; then bodies are independent of each other, and run in parallel. The same bits for any thread count.
     /// One report per body; if one failed, every body has the state of before.
     std::vector<StepReport> advance();
 
@@ -29,7 +29,8 @@ public:
     const std::vector<Body>& bodies() const { return bodies_; }
     std::size_t frame() const { return frame_; } ///< 0 at the start
     std::size_t frame_count() const;             ///< the first one at time 0 included
-    std::vector<std::string> notes() const; ///< of all bodies, in the order of the first that has each; with how many, if several have it
+    std::vector<std::string>
+    notes() const; ///< of all bodies, in the order of the first that has each; with how many, if several have it
     double time_s() const { return static_cast<double>(frame_) * scene_.frame_s; }
     std::span<const std::unique_ptr<ContactSearch>> contacts() const { return contacts_; }
 

@@ -22,8 +22,8 @@ template <class T> void read_raw(std::istream& in, std::span<T> values)
     in.read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(values.size_bytes()));
 }
 
-/// A list with its length before it. What is read was checked by the checkpoint's own checksum; a length that the stream does not hold
-/// makes it fail.
+/// A list with its length before it. What is read was checked by the checkpoint's own checksum; a length that the
+/// stream does not hold makes it fail.
 template <class List> void write_list(std::ostream& out, const List& list)
 {
     const std::size_t count = list.size();
@@ -34,7 +34,8 @@ template <class List> void read_list(std::istream& in, List& list)
 {
     std::size_t count = 0;
     read_raw<std::size_t>(in, {&count, 1});
-    if (!in || count > static_cast<std::size_t>(std::max<std::streamsize>(in.rdbuf()->in_avail(), 0)) / sizeof(typename List::value_type)) {
+    if (!in || count > static_cast<std::size_t>(std::max<std::streamsize>(in.rdbuf()->in_avail(), 0)) /
+                           sizeof(typename List::value_type)) {
         in.setstate(std::ios::failbit);
         return;
     }

@@ -21,7 +21,10 @@ Vec3 blend(const Configuration& c, std::size_t k, const Field& x, const MatrixFi
 
 std::size_t points_of(const Configuration& c) { return c.surface ? c.surface->mesh.vertices.size() : c.body.size(); }
 Vec3 point(const Configuration& c, std::size_t k) { return blend(c, k, c.x, c.deformation); }
-Vec3 point_change(const Configuration& c, std::size_t k, const Field& dx, const MatrixField& dj) { return blend(c, k, dx, dj); }
+Vec3 point_change(const Configuration& c, std::size_t k, const Field& dx, const MatrixField& dj)
+{
+    return blend(c, k, dx, dj);
+}
 
 void add_point_force(const Configuration& c, std::size_t k, const Vec3& force, Forces out)
 {

@@ -5,8 +5,9 @@
 
 namespace cinch {
 
-/// The points by which a body touches things: the vertices of its surface, v_k = Σ_j w_kj (X_j + J_j (v⁰_k − x_j)) (Eq. 1), or
-/// its nodes where it has no surface. Forces on them go to the nodes by the transpose of that map, which is linear in X.
+/// The points by which a body touches things: the vertices of its surface, v_k = Σ_j w_kj (X_j + J_j (v⁰_k − x_j)) (Eq.
+/// 1), or its nodes where it has no surface. Forces on them go to the nodes by the transpose of that map, which is
+/// linear in X.
 std::size_t points_of(const Configuration& c);
 Vec3 point(const Configuration& c, std::size_t k);
 /// Its change under dx, with dj = dG.

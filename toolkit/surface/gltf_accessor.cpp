@@ -23,11 +23,16 @@ std::size_t bytes_of(Component type)
 double one_of(Component type)
 {
     switch (type) {
-    case Component::int8: return 127;
-    case Component::uint8: return 255;
-    case Component::int16: return 32767;
-    case Component::uint16: return 65535;
-    default: return 0;
+    case Component::int8:
+        return 127;
+    case Component::uint8:
+        return 255;
+    case Component::int16:
+        return 32767;
+    case Component::uint16:
+        return 65535;
+    default:
+        return 0;
     }
 }
 
@@ -60,12 +65,18 @@ template <class T> double load(const char* at)
 double component(const char* at, Component type)
 {
     switch (type) {
-    case Component::int8: return load<std::int8_t>(at);
-    case Component::uint8: return load<std::uint8_t>(at);
-    case Component::int16: return load<std::int16_t>(at);
-    case Component::uint16: return load<std::uint16_t>(at);
-    case Component::uint32: return load<std::uint32_t>(at);
-    case Component::float32: return load<float>(at);
+    case Component::int8:
+        return load<std::int8_t>(at);
+    case Component::uint8:
+        return load<std::uint8_t>(at);
+    case Component::int16:
+        return load<std::int16_t>(at);
+    case Component::uint16:
+        return load<std::uint16_t>(at);
+    case Component::uint32:
+        return load<std::uint32_t>(at);
+    case Component::float32:
+        return load<float>(at);
     }
     return 0;
 }

@@ -302,8 +302,8 @@ std::size_t GltfDocument::count(const char* list) const
 GltfValue GltfDocument::at(const char* list, std::size_t i) const
 {
     if (i >= count(list))
-        throw InputError::in_file(file_, std::string(list) + "[" + std::to_string(i) +
-                                             "] does not exist; there are " + std::to_string(count(list)));
+        throw InputError::in_file(file_, std::string(list) + "[" + std::to_string(i) + "] does not exist; there are " +
+                                             std::to_string(count(list)));
     return root()[list][i];
 }
 

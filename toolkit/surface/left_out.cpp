@@ -10,7 +10,8 @@ void note_left_out(const std::vector<LeftOut>& kinds, std::vector<std::string>& 
     for (const LeftOut& kind : kinds) {
         if (kind.count == 0)
             continue;
-        list += (list.empty() ? "" : ", ") + std::to_string(kind.count) + " " + (kind.count == 1 ? kind.one : kind.many);
+        list +=
+            (list.empty() ? "" : ", ") + std::to_string(kind.count) + " " + (kind.count == 1 ? kind.one : kind.many);
         all += kind.count;
     }
     if (all > 0)

@@ -192,13 +192,13 @@ private:
                     continue;
                 if (!(joints[set][i] >= 0 && joints[set][i] < count))
                     fail("vertex " + std::to_string(k) + " of " + primitive.place() + " names joint " +
-                         std::to_string(static_cast<std::int64_t>(joints[set][i])) + "; skin " +
-                         std::to_string(skin) + " has " + std::to_string(count));
+                         std::to_string(static_cast<std::int64_t>(joints[set][i])) + "; skin " + std::to_string(skin) +
+                         " has " + std::to_string(count));
                 sum[first + static_cast<std::uint32_t>(joints[set][i])] += weight;
             }
         if (sum.empty()) // bound to nothing; the first joint named keeps it in place, and the load report counts it
-            sum[first +
-                static_cast<std::uint32_t>(std::clamp(joints[0][4 * k], 0.0, static_cast<double>(count - 1)))] = 0;
+            sum[first + static_cast<std::uint32_t>(std::clamp(joints[0][4 * k], 0.0, static_cast<double>(count - 1)))] =
+                0;
         return {sum.begin(), sum.end()};
     }
 

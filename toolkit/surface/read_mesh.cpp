@@ -40,8 +40,9 @@ static std::string lower_extension(const std::filesystem::path& path)
 static const char* compression_of(std::string_view bytes)
 {
     using namespace std::string_view_literals;
-    for (const auto& [first, name] : {std::pair("\x1f\x8b"sv, "gzip"), std::pair("PK\x03\x04"sv, "zip"), std::pair("BZh"sv, "bzip2"),
-                                      std::pair("\xfd\x37zXZ"sv, "xz"), std::pair("\x28\xb5\x2f\xfd"sv, "zstd")})
+    for (const auto& [first, name] :
+         {std::pair("\x1f\x8b"sv, "gzip"), std::pair("PK\x03\x04"sv, "zip"), std::pair("BZh"sv, "bzip2"),
+          std::pair("\xfd\x37zXZ"sv, "xz"), std::pair("\x28\xb5\x2f\xfd"sv, "zstd")})
         if (bytes.starts_with(first))
             return name;
     return nullptr;
@@ -50,7 +51,8 @@ static const char* compression_of(std::string_view bytes)
 static const MeshFormat* format_of(const std::filesystem::path& path)
 {
     const std::string extension = lower_extension(path);
-    const auto* const found = std::find_if(std::begin(mesh_formats), std::end(mesh_formats), [&](const MeshFormat& format) { return format.extension == extension; });
+    const auto* const found = std::find_if(std::begin(mesh_formats), std::end(mesh_formats),
+                                           [&](const MeshFormat& format) { return format.extension == extension; });
     return found == std::end(mesh_formats) ? nullptr : found;
 }
 
@@ -68,7 +70,8 @@ MeshFile read_mesh(const std::filesystem::path& path)
 {
     const MeshFormat* const format = format_of(path);
     if (!format)
-        throw InputError::in_file(path.string(), "unknown mesh format '" + path.extension().string() + "'; known are " + mesh_extensions());
+        throw InputError::in_file(path.string(), "unknown mesh format '" + path.extension().string() + "'; known are " +
+                                                     mesh_extensions());
     const std::string bytes = read_bytes(path);
     if (bytes.size() > std::numeric_limits<std::uint32_t>::max())
         throw InputError::in_file(path.string(), "is larger than 4 GiB; vertex indices have 32 bits");

@@ -18,7 +18,8 @@ struct MeshFormat {
     std::string_view extension; ///< in lower case
     MeshFile (*parse)(std::string_view, const std::string&);
 };
-inline constexpr MeshFormat mesh_formats[] = {{".obj", parse_obj}, {".off", parse_off}, {".ply", parse_ply}, {".stl", parse_stl}};
+inline constexpr MeshFormat mesh_formats[] = {
+    {".obj", parse_obj}, {".off", parse_off}, {".ply", parse_ply}, {".stl", parse_stl}};
 
 /// ".obj, .off, .ply, .stl", with what else there is.
 std::string mesh_extensions(std::string_view others = "");

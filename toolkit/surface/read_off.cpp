@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Geomview OFF in its three-dimensional ascii forms: [ST][C][N]OFF and nOFF of dimension 3.
 //
-// In the format's own terms the numbers follow each other and line ends matter for one thing only: what follows a face's indices on their
-// line is the face's colour. Files, however, come with one vertex per line and more on it than the keyword says, without the number of
-// edges, or with several faces on a line. So the file is read in each way that it may be meant; a way fits only if every vertex and every
-// face that is declared is there and nothing is left over. One mesh must come out, else the file is refused.
+// In the format's own terms the numbers follow each other and line ends matter for one thing only: what follows a
+// face's indices on their line is the face's colour. Files, however, come with one vertex per line and more on it than
+// the keyword says, without the number of edges, or with several faces on a line. So the file is read in each way that
+// it may be meant; a way fits only if every vertex and every face that is declared is there and nothing is left over.
+// One mesh must come out, else the file is refused.
 #include <algorithm>
 #include <optional>
 
@@ -19,11 +20,13 @@ namespace {
 constexpr std::size_t one_per_line = 0;
 
 struct Layout {
-    bool edge_count;            ///< a third number follows the numbers of vertices and faces
-    std::size_t vertex_numbers; ///< of each vertex, whatever the lines; or `one_per_line`, with anything after its coordinates
+    bool edge_count; ///< a third number follows the numbers of vertices and faces
+    std::size_t
+        vertex_numbers; ///< of each vertex, whatever the lines; or `one_per_line`, with anything after its coordinates
     enum class Faces {
         line_each,      ///< indices and anything else on one line
-        ends_with_line, ///< indices on any number of lines; a colour, at most four numbers, ends with the line of the last
+        ends_with_line, ///< indices on any number of lines; a colour, at most four numbers, ends with the line of the
+                        ///< last
         joined          ///< no colours, so that lines do not matter
     } faces;
 };
@@ -46,14 +49,15 @@ std::size_t declared(const TextScan& scan, std::string_view word, std::string_vi
         scan.fail(std::string(what) + " is negative: " + std::to_string(count));
     // A vertex takes at least six bytes ("0 0 0 ") and a face two ("0 "), but for the last one.
     if (static_cast<std::uint64_t>(count) > scan.bytes_left())
-        scan.fail(std::string(what) + " is " + std::to_string(count) + ", but only " + std::to_string(scan.bytes_left()) +
-                  " bytes follow");
+        scan.fail(std::string(what) + " is " + std::to_string(count) + ", but only " +
+                  std::to_string(scan.bytes_left()) + " bytes follow");
     return static_cast<std::size_t>(count);
 }
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-// The keyword, which may be left out, in any case but for N (normals) and n (a dimension follows), and up to the number of faces.
+// The keyword, which may be left out, in any case but for N (normals) and n (a dimension follows), and up to the number
+// of faces.
 Header read_header(TextScan& scan)
 {
     std::string_view word = scan.word_across_lines("the word OFF");
@@ -95,7 +99,10 @@ Header read_header(TextScan& scan)
     return header;
 }
 
-void skip_edge_count(TextScan& scan) { scan.integer(scan.word_across_lines("the number of edges"), "the number of edges"); }
+void skip_edge_count(TextScan& scan)
+{
+    scan.integer(scan.word_across_lines("the number of edges"), "the number of edges");
+}
 
 std::size_t words_left(TextScan& scan)
 {
@@ -114,7 +121,8 @@ void read_vertices(TextScan& scan, const Header& header, std::size_t vertex_numb
             scan.fail("expected the end of the line after the counts, found '" + printable(word) + "'");
         for (std::size_t i = 0; i < header.vertices; ++i) {
             if (!scan.next_line())
-                scan.fail("the file ends after " + std::to_string(i) + " of " + std::to_string(header.vertices) + " vertices");
+                scan.fail("the file ends after " + std::to_string(i) + " of " + std::to_string(header.vertices) +
+                          " vertices");
             vertices.push_back(scan.point("a coordinate"));
             const std::size_t numbers = 3 + words_left(scan);
             out.least_numbers = i ? std::min(out.least_numbers, numbers) : numbers;
@@ -143,7 +151,8 @@ void read_faces(TextScan& scan, const Header& header, Layout::Faces layout, Mesh
     for (std::size_t i = 0; i < header.faces; ++i) {
         if (!joined && !scan.next_line())
             scan.fail("the file ends after " + std::to_string(i) + " of " + std::to_string(header.faces) + " faces");
-        const std::int64_t size = scan.integer(next("the number of vertices of a face"), "the number of vertices of a face");
+        const std::int64_t size =
+            scan.integer(next("the number of vertices of a face"), "the number of vertices of a face");
         if (size < 0)
             scan.fail("the number of vertices of a face is negative: " + std::to_string(size));
         polygon.clear();
@@ -173,7 +182,8 @@ Reading read_body(TextScan scan, const Header& header, const Layout& layout)
     read_vertices(scan, header, layout.vertex_numbers, out);
     if (layout.vertex_numbers != one_per_line && layout.faces != Layout::Faces::joined)
         if (const std::string_view word = scan.word(); !word.empty())
-            scan.fail("expected the end of the line after " + std::to_string(header.vertices) + " vertices, found '" + printable(word) + "'");
+            scan.fail("expected the end of the line after " + std::to_string(header.vertices) + " vertices, found '" +
+                      printable(word) + "'");
     read_faces(scan, header, layout.faces, out.file);
     return out;
 }
@@ -226,17 +236,21 @@ MeshFile parse_off(std::string_view bytes, const std::string& file)
         }
         // Each line with one vertex and all its numbers, or one face: no other way gives anything else.
         const bool is_strict = reading->least_numbers == reading->most_numbers &&
-                               std::find(header.vertex_numbers.begin(), header.vertex_numbers.end(), reading->most_numbers) != header.vertex_numbers.end();
+                               std::find(header.vertex_numbers.begin(), header.vertex_numbers.end(),
+                                         reading->most_numbers) != header.vertex_numbers.end();
         if (!found && way.faces == Layout::Faces::line_each && is_strict)
             return std::move(reading->file);
         if (!found)
             found = std::move(reading);
-        else if (found->file.mesh.vertices != reading->file.mesh.vertices || found->file.mesh.triangles != reading->file.mesh.triangles)
-            throw InputError::in_file(file, "can be read in two ways that differ; write one vertex or face on each line");
+        else if (found->file.mesh.vertices != reading->file.mesh.vertices ||
+                 found->file.mesh.triangles != reading->file.mesh.triangles)
+            throw InputError::in_file(file,
+                                      "can be read in two ways that differ; write one vertex or face on each line");
     }
     if (found)
         return std::move(found->file);
-    // Of the most usual way, or where vertices share lines, of the one that allows it. Refused ones come in the order of the ways.
+    // Of the most usual way, or where vertices share lines, of the one that allows it. Refused ones come in the order
+    // of the ways.
     const bool joined = seems_joined(scan, header, ways.front().edge_count);
     throw refusals[joined ? 4 : 0];
 }

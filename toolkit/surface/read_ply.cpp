@@ -124,7 +124,8 @@ Header read_header(std::string_view bytes, const std::string& file)
     const std::size_t line_end = bytes.find_first_not_of(" \t", header.body);
     if (line_end != std::string_view::npos && (bytes[line_end] == '\r' || bytes[line_end] == '\n'))
         header.body = line_end;
-    // The body starts right after the line end, which is like that of the first line: after a lone CR, a byte 10 is data.
+    // The body starts right after the line end, which is like that of the first line: after a lone CR, a byte 10 is
+    // data.
     const std::size_t first_end = bytes.find_first_of("\r\n");
     const bool lone_cr = bytes[first_end] == '\r' && bytes[first_end + 1] != '\n'; // there are more lines
     if (header.body < bytes.size() && bytes[header.body] == '\r')
@@ -144,7 +145,10 @@ public:
     }
 
     /// Whether anything but blanks is left; nothing may be read after that.
-    bool has_more() { return format_ == Format::ascii ? !text_.word().empty() || text_.next_line() : at_ < bytes_.size(); }
+    bool has_more()
+    {
+        return format_ == Format::ascii ? !text_.word().empty() || text_.next_line() : at_ < bytes_.size();
+    }
     std::size_t bytes_left() const { return format_ == Format::ascii ? text_.bytes_left() : bytes_.size() - at_; }
 
     /// One scalar as a double; exact for every PLY type.
@@ -161,14 +165,22 @@ public:
             raw = raw << 8 | static_cast<unsigned char>(bytes_[at_ + (format_ == Format::big ? i : size - 1 - i)]);
         at_ += size;
         switch (type) {
-        case Scalar::i8: return static_cast<std::int8_t>(raw);
-        case Scalar::u8: return static_cast<std::uint8_t>(raw);
-        case Scalar::i16: return static_cast<std::int16_t>(raw);
-        case Scalar::u16: return static_cast<std::uint16_t>(raw);
-        case Scalar::i32: return static_cast<std::int32_t>(raw);
-        case Scalar::u32: return static_cast<std::uint32_t>(raw);
-        case Scalar::f32: return std::bit_cast<float>(static_cast<std::uint32_t>(raw));
-        case Scalar::f64: return std::bit_cast<double>(raw);
+        case Scalar::i8:
+            return static_cast<std::int8_t>(raw);
+        case Scalar::u8:
+            return static_cast<std::uint8_t>(raw);
+        case Scalar::i16:
+            return static_cast<std::int16_t>(raw);
+        case Scalar::u16:
+            return static_cast<std::uint16_t>(raw);
+        case Scalar::i32:
+            return static_cast<std::int32_t>(raw);
+        case Scalar::u32:
+            return static_cast<std::uint32_t>(raw);
+        case Scalar::f32:
+            return std::bit_cast<float>(static_cast<std::uint32_t>(raw));
+        case Scalar::f64:
+            return std::bit_cast<double>(raw);
         }
         return 0;
     }
@@ -252,7 +264,7 @@ enum class Meaning {
 struct Polygons {
     std::vector<Triangle> triangles;
     std::size_t small_faces = 0, small_strips = 0, small_others = 0; ///< of fewer than three vertices
-    std::vector<std::uint32_t> polygon; // scratch
+    std::vector<std::uint32_t> polygon;                              // scratch
 };
 
 void add_fan(Polygons& out)
@@ -262,8 +274,8 @@ void add_fan(Polygons& out)
         out.triangles.push_back({out.polygon[0], out.polygon[i - 1], out.polygon[i]});
 }
 
-// Every second triangle of a strip turns the other way, so two corners are swapped. Degenerate ones, by which strips are stitched together,
-// are kept as all degenerate triangles are.
+// Every second triangle of a strip turns the other way, so two corners are swapped. Degenerate ones, by which strips
+// are stitched together, are kept as all degenerate triangles are.
 void end_strip(Polygons& out)
 {
     out.small_strips += out.polygon.size() == 1 || out.polygon.size() == 2; // between two ends there is no strip
@@ -277,11 +289,15 @@ void end_strip(Polygons& out)
 // -1, or what it becomes in a type without a sign, if no vertex has that index.
 bool ends_strip(double index, Scalar type, std::uint64_t vertices)
 {
-    const double unsigned_end = type == Scalar::u8 ? 0xff : type == Scalar::u16 ? 0xffff : type == Scalar::u32 ? 0xffffffff : -1;
+    const double unsigned_end = type == Scalar::u8    ? 0xff
+                                : type == Scalar::u16 ? 0xffff
+                                : type == Scalar::u32 ? 0xffffffff
+                                                      : -1;
     return index == -1 || (index == unsigned_end && index >= static_cast<double>(vertices));
 }
 
-void read_face(Body& body, const Element& element, std::size_t index_property, Meaning meaning, std::uint64_t vertices, Polygons& out)
+void read_face(Body& body, const Element& element, std::size_t index_property, Meaning meaning, std::uint64_t vertices,
+               Polygons& out)
 {
     for (std::size_t p = 0; p < element.properties.size(); ++p) {
         const Property& property = element.properties[p];
@@ -302,8 +318,8 @@ void read_face(Body& body, const Element& element, std::size_t index_property, M
                 continue;
             }
             if (!(index >= 0 && index < static_cast<double>(vertices)))
-                body.fail("vertex index " + std::to_string(static_cast<std::int64_t>(index)) + " is out of range; the file declares " +
-                          std::to_string(vertices) + " vertices");
+                body.fail("vertex index " + std::to_string(static_cast<std::int64_t>(index)) +
+                          " is out of range; the file declares " + std::to_string(vertices) + " vertices");
             out.polygon.push_back(static_cast<std::uint32_t>(index));
         }
         if (p != index_property)
@@ -323,7 +339,8 @@ void read_face(Body& body, const Element& element, std::size_t index_property, M
 // Lists of an element of such a name are lines, whatever their length.
 bool is_line(std::string_view element)
 {
-    return element.starts_with("edge") || element.starts_with("line") || element.starts_with("polyline") || element.starts_with("curve");
+    return element.starts_with("edge") || element.starts_with("line") || element.starts_with("polyline") ||
+           element.starts_with("curve");
 }
 
 // The list of vertex indices, or the number of properties if there is none.
@@ -332,7 +349,8 @@ std::size_t index_list(const Element& element)
     std::size_t found = element.properties.size();
     for (std::size_t p = 0; p < element.properties.size(); ++p) {
         const Property& property = element.properties[p];
-        if (property.list_size_type && property.type < Scalar::f32 && (property.name == "vertex_indices" || property.name == "vertex_index"))
+        if (property.list_size_type && property.type < Scalar::f32 &&
+            (property.name == "vertex_indices" || property.name == "vertex_index"))
             found = p;
     }
     return found;
@@ -357,7 +375,8 @@ MeshFile parse_ply(std::string_view bytes, const std::string& file)
     std::string not_read;
     for (const Element& element : header.elements) {
         const std::size_t least = smallest_item(element, header.format);
-        const bool is_vertex = &element == &*vertex_element, is_face = element.name == "face", is_strips = element.name == "tristrips";
+        const bool is_vertex = &element == &*vertex_element, is_face = element.name == "face",
+                   is_strips = element.name == "tristrips";
         const std::size_t indices = index_list(element);
         const bool has_indices = indices < element.properties.size();
         if ((is_face || is_strips) && !has_indices)
@@ -367,13 +386,15 @@ MeshFile parse_ply(std::string_view bytes, const std::string& file)
         if (least == 0 && !is_vertex)
             continue; // nothing of it is in the file
         if (least > 0 && element.count > 0 && element.count - 1 > body.bytes_left() / least)
-            throw InputError::in_file(file, "element '" + printable(element.name) + "' declares " + std::to_string(element.count) +
-                                                " items, but only " + std::to_string(body.bytes_left()) + " bytes follow");
+            throw InputError::in_file(file, "element '" + printable(element.name) + "' declares " +
+                                                std::to_string(element.count) + " items, but only " +
+                                                std::to_string(body.bytes_left()) + " bytes follow");
         if (is_vertex) {
             int axes[3] = {-1, -1, -1};
             for (std::size_t p = 0; p < element.properties.size(); ++p)
                 for (int axis = 0; axis < 3; ++axis)
-                    if (!element.properties[p].list_size_type && element.properties[p].name == std::string(1, static_cast<char>('x' + axis)))
+                    if (!element.properties[p].list_size_type &&
+                        element.properties[p].name == std::string(1, static_cast<char>('x' + axis)))
                         axes[axis] = static_cast<int>(p);
             if (axes[0] < 0 || axes[1] < 0 || axes[2] < 0)
                 throw InputError::in_file(file, "element 'vertex' lacks one of the properties x, y and z");
@@ -382,23 +403,26 @@ MeshFile parse_ply(std::string_view bytes, const std::string& file)
                 read_vertex(body, element, axes, out.mesh);
             continue;
         }
-        const Meaning meaning = is_face                                    ? Meaning::polygon
-                                : is_strips                                ? Meaning::strips
-                                : has_indices && !is_line(element.name)    ? Meaning::unknown
-                                                                           : Meaning::none;
+        const Meaning meaning = is_face                                 ? Meaning::polygon
+                                : is_strips                             ? Meaning::strips
+                                : has_indices && !is_line(element.name) ? Meaning::unknown
+                                                                        : Meaning::none;
         for (std::uint64_t i = 0; i < element.count; ++i)
-            read_face(body, element, meaning == Meaning::none ? element.properties.size() : indices, meaning, vertex_element->count, faces);
+            read_face(body, element, meaning == Meaning::none ? element.properties.size() : indices, meaning,
+                      vertex_element->count, faces);
     }
     out.mesh.triangles = std::move(faces.triangles);
-    note_left_out({{faces.small_faces, "face of fewer than three vertices", "faces of fewer than three vertices"},
-                   {faces.small_strips, "strip of fewer than three vertices", "strips of fewer than three vertices"},
-                   {faces.small_others, "element of fewer than three vertices", "elements of fewer than three vertices"}},
-                  out.notes);
+    note_left_out(
+        {{faces.small_faces, "face of fewer than three vertices", "faces of fewer than three vertices"},
+         {faces.small_strips, "strip of fewer than three vertices", "strips of fewer than three vertices"},
+         {faces.small_others, "element of fewer than three vertices", "elements of fewer than three vertices"}},
+        out.notes);
     if (!not_read.empty())
         out.notes.push_back("not read, as no surface: " + not_read);
     const std::size_t left = body.bytes_left();
     if (body.has_more())
-        out.notes.push_back(std::to_string(left) + (left == 1 ? " byte follows" : " bytes follow") + " the last element that the header declares; not read");
+        out.notes.push_back(std::to_string(left) + (left == 1 ? " byte follows" : " bytes follow") +
+                            " the last element that the header declares; not read");
     return out;
 }
 

@@ -18,10 +18,12 @@ std::size_t count_between(TextScan& scan, const char* what, std::int64_t least)
     return static_cast<std::size_t>(n);
 }
 
-void expect_count(TextScan& scan, std::size_t found, std::size_t wanted, const std::string& what, const std::string& other)
+void expect_count(TextScan& scan, std::size_t found, std::size_t wanted, const std::string& what,
+                  const std::string& other)
 {
     if (found != wanted)
-        scan.fail("declares " + std::to_string(found) + " " + what + ", but the " + other + " " + std::to_string(wanted));
+        scan.fail("declares " + std::to_string(found) + " " + what + ", but the " + other + " " +
+                  std::to_string(wanted));
 }
 
 } // namespace
@@ -40,8 +42,8 @@ Influences parse_weights_text(std::string_view bytes, const std::string& file, s
         for (std::size_t i = 0; i < n; ++i) {
             const std::int64_t node = scan.integer(scan.word_across_lines("a node index"), "a node index");
             if (node < 0 || node >= static_cast<std::int64_t>(out.node_count))
-                scan.fail("node index " + std::to_string(node) + " of vertex " + std::to_string(k) + " is out of range; the file declares " +
-                          std::to_string(out.node_count) + " nodes");
+                scan.fail("node index " + std::to_string(node) + " of vertex " + std::to_string(k) +
+                          " is out of range; the file declares " + std::to_string(out.node_count) + " nodes");
             const double weight = scan.number(scan.word_across_lines("a weight"), "a weight");
             if (weight < 0)
                 scan.fail("vertex " + std::to_string(k) + " has a negative weight");

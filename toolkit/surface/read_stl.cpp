@@ -36,7 +36,8 @@ MeshFile parse_binary(std::string_view bytes, const std::string& file)
                 const std::size_t at = first + 12 * corner + 4 * axis;
                 const float x = std::bit_cast<float>(little_u32(bytes, at));
                 if (!std::isfinite(x))
-                    throw InputError::at_byte(file, at, "a coordinate of triangle " + std::to_string(t) + " is not finite");
+                    throw InputError::at_byte(file, at,
+                                              "a coordinate of triangle " + std::to_string(t) + " is not finite");
                 v[static_cast<int>(axis)] = x;
             }
             mesh.vertices.push_back(v);
@@ -99,8 +100,8 @@ MeshFile parse_ascii(std::string_view bytes, const std::string& file)
 MeshFile parse_stl(std::string_view bytes, const std::string& file)
 {
     require_default_arithmetic();
-    // Binary files may begin with "solid" too, so the count decides. Below 4 GiB it is below 2^27, so the byte of its highest bits is below
-    // 8, and no such byte is in a text.
+    // Binary files may begin with "solid" too, so the count decides. Below 4 GiB it is below 2^27, so the byte of its
+    // highest bits is below 8, and no such byte is in a text.
     const bool has_header = bytes.size() >= header_bytes;
     const bool is_binary = has_header && static_cast<unsigned char>(bytes[83]) < 8;
     std::size_t first_word = bytes.starts_with("\xef\xbb\xbf") ? 3 : 0; // a UTF-8 byte order mark
@@ -116,8 +117,10 @@ MeshFile parse_stl(std::string_view bytes, const std::string& file)
                                       std::to_string(wanted) + " bytes; the file has " + std::to_string(bytes.size()));
     if (const std::uint64_t trailing = bytes.size() - wanted)
         throw InputError::at_byte(file, wanted,
-                                  std::to_string(trailing) + " trailing " + (trailing == 1 ? "byte" : "bytes") + " after the " + std::to_string(declared) +
-                                      (declared == 1 ? " triangle" : " triangles") + " that binary STL declares; correct the count at byte 80, or cut them off");
+                                  std::to_string(trailing) + " trailing " + (trailing == 1 ? "byte" : "bytes") +
+                                      " after the " + std::to_string(declared) +
+                                      (declared == 1 ? " triangle" : " triangles") +
+                                      " that binary STL declares; correct the count at byte 80, or cut them off");
     return parse_binary(bytes, file);
 }
 

@@ -7,8 +7,8 @@
 #include <Eigen/Geometry>
 
 #include "cinch/environment.hpp"
-#include "toolkit/surface/character.hpp"
 #include "cinch/surface.hpp"
+#include "toolkit/surface/character.hpp"
 
 namespace cinch {
 namespace {

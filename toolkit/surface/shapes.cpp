@@ -61,10 +61,11 @@ TriangleMesh brain(std::size_t vertices)
     TriangleMesh mesh = ring_sphere(vertices);
     for (Vec3& v : mesh.vertices) {
         const Vec3 d = v;
-        const double sulcus = bump(labyrinth(d, 13), 0.38);               // narrow winding grooves
-        const double swelling = 0.035 * labyrinth(d + Vec3(3, 1, 2), 4);  // lobes
+        const double sulcus = bump(labyrinth(d, 13), 0.38);              // narrow winding grooves
+        const double swelling = 0.035 * labyrinth(d + Vec3(3, 1, 2), 4); // lobes
         const double fissure = bump(d.y(), 0.07) * std::clamp(0.6 + d.z(), 0.0, 1.0);
-        const double temporal = 0.16 * bump((d - Vec3(0.35, 0.75, -0.55)).norm(), 0.45) + 0.16 * bump((d - Vec3(0.35, -0.75, -0.55)).norm(), 0.45);
+        const double temporal = 0.16 * bump((d - Vec3(0.35, 0.75, -0.55)).norm(), 0.45) +
+                                0.16 * bump((d - Vec3(0.35, -0.75, -0.55)).norm(), 0.45);
         const double radius = 1 + swelling + temporal - 0.17 * sulcus * (1 - fissure) - 0.30 * fissure;
         v = radius * d.cwiseProduct(Vec3(1.0, 0.82, 0.72));
     }
@@ -74,13 +75,13 @@ TriangleMesh brain(std::size_t vertices)
 TriangleMesh santa(std::size_t vertices)
 {
     const Capsule limbs[] = {
-        {{0, 0, 0.25}, {0, 0, 0.78}, 0.18, 0.20},          // neck and head
-        {{0.02, 0, 0.85}, {-0.12, 0, 1.25}, 0.17, 0.05},   // cap
-        {{0, 0.25, 0.25}, {0.12, 0.78, -0.10}, 0.15, 0.12},   // arms
+        {{0, 0, 0.25}, {0, 0, 0.78}, 0.18, 0.20},           // neck and head
+        {{0.02, 0, 0.85}, {-0.12, 0, 1.25}, 0.17, 0.05},    // cap
+        {{0, 0.25, 0.25}, {0.12, 0.78, -0.10}, 0.15, 0.12}, // arms
         {{0, -0.25, 0.25}, {0.12, -0.78, -0.10}, 0.15, 0.12},
-        {{0, 0.18, -0.35}, {0.03, 0.36, -0.98}, 0.19, 0.14},  // legs
+        {{0, 0.18, -0.35}, {0.03, 0.36, -0.98}, 0.19, 0.14}, // legs
         {{0, -0.18, -0.35}, {0.03, -0.36, -0.98}, 0.19, 0.14},
-        {{0.03, 0.36, -1.0}, {0.24, 0.38, -1.04}, 0.13, 0.10},  // feet
+        {{0.03, 0.36, -1.0}, {0.24, 0.38, -1.04}, 0.13, 0.10}, // feet
         {{0.03, -0.36, -1.0}, {0.24, -0.38, -1.04}, 0.13, 0.10},
     };
     TriangleMesh mesh = ring_sphere(vertices);
@@ -99,8 +100,8 @@ TriangleMesh fish(std::size_t vertices)
     wrap(mesh, [](const Vec3& p) {
         double d = ellipsoid(p, Vec3(0.10, 0, 0), Vec3(0.85, 0.24, 0.36));
         d = smooth_union(d, distance(Capsule{{-0.4, 0, 0}, {-0.85, 0, 0}, 0.16, 0.10}, p), 0.15);
-        d = smooth_union(d, ellipsoid(p, Vec3(-0.98, 0, 0), Vec3(0.22, 0.06, 0.38)), 0.12);      // tail
-        d = smooth_union(d, ellipsoid(p, Vec3(0.05, 0, 0.38), Vec3(0.30, 0.06, 0.20)), 0.10);    // back fin
+        d = smooth_union(d, ellipsoid(p, Vec3(-0.98, 0, 0), Vec3(0.22, 0.06, 0.38)), 0.12);       // tail
+        d = smooth_union(d, ellipsoid(p, Vec3(0.05, 0, 0.38), Vec3(0.30, 0.06, 0.20)), 0.10);     // back fin
         d = smooth_union(d, ellipsoid(p, Vec3(0.35, 0.28, -0.12), Vec3(0.16, 0.22, 0.06)), 0.10); // side fins
         d = smooth_union(d, ellipsoid(p, Vec3(0.35, -0.28, -0.12), Vec3(0.16, 0.22, 0.06)), 0.10);
         return d;
@@ -118,9 +119,15 @@ struct Shape {
 TriangleMesh santa_fine() { return subdivide(subdivide(santa(2857))); }
 
 constexpr Shape shapes[] = {
-    {"brain", [] { return brain(30000); }},        {"brain-3500", [] { return brain(3500); }},  {"brain-30000", [] { return brain(30000); }},
-    {"brain-145000", [] { return brain(145000); }}, {"santa", [] { return santa(2857); }},       {"santa-2857", [] { return santa(2857); }},
-    {"santa-45682", santa_fine},                    {"fish", [] { return fish(8000); }},         {"fish-8000", [] { return fish(8000); }},
+    {"brain", [] { return brain(30000); }},
+    {"brain-3500", [] { return brain(3500); }},
+    {"brain-30000", [] { return brain(30000); }},
+    {"brain-145000", [] { return brain(145000); }},
+    {"santa", [] { return santa(2857); }},
+    {"santa-2857", [] { return santa(2857); }},
+    {"santa-45682", santa_fine},
+    {"fish", [] { return fish(8000); }},
+    {"fish-8000", [] { return fish(8000); }},
 };
 
 } // namespace
@@ -149,7 +156,9 @@ TriangleMesh box(const Vec3& size, const std::array<int, 3>& cells)
     auto vertex = [&](const std::array<int, 3>& at) {
         const auto [place, fresh] = known.emplace(at, static_cast<std::uint32_t>(mesh.vertices.size()));
         if (fresh)
-            mesh.vertices.emplace_back(size[0] * (double(at[0]) / cells[0] - 0.5), size[1] * (double(at[1]) / cells[1] - 0.5), size[2] * (double(at[2]) / cells[2] - 0.5));
+            mesh.vertices.emplace_back(size[0] * (double(at[0]) / cells[0] - 0.5),
+                                       size[1] * (double(at[1]) / cells[1] - 0.5),
+                                       size[2] * (double(at[2]) / cells[2] - 0.5));
         return place->second;
     };
     const bool flat = size[2] == 0;

@@ -8,7 +8,8 @@
 
 namespace cinch {
 
-TextScan::TextScan(std::string_view bytes, std::string file, TextSyntax syntax) : bytes_(bytes), file_(std::move(file)), syntax_(syntax)
+TextScan::TextScan(std::string_view bytes, std::string file, TextSyntax syntax)
+    : bytes_(bytes), file_(std::move(file)), syntax_(syntax)
 {
     if (bytes_.starts_with("\xef\xbb\xbf"))
         at_ = 3; // a UTF-8 byte order mark
@@ -83,7 +84,8 @@ std::string_view TextScan::word()
         return {};
     }
     const std::size_t begin = at_;
-    while (at_ < bytes_.size() && !is_blank(bytes_[at_]) && !line_end(bytes_, at_) && !(syntax_.comments_end_words && starts_comment(at_)) &&
+    while (at_ < bytes_.size() && !is_blank(bytes_[at_]) && !line_end(bytes_, at_) &&
+           !(syntax_.comments_end_words && starts_comment(at_)) &&
            !(syntax_.joined_lines && bytes_[at_] == '\\' && line_end(bytes_, at_ + 1)))
         ++at_;
     return bytes_.substr(begin, at_ - begin);
@@ -111,8 +113,9 @@ std::string printable(std::string_view word)
 
 bool is_keyword(std::string_view word, std::string_view keyword)
 {
-    return std::equal(word.begin(), word.end(), keyword.begin(), keyword.end(),
-                      [](char a, char b) { return (a >= 'A' && a <= 'Z' ? static_cast<char>(a - 'A' + 'a') : a) == b; });
+    return std::equal(word.begin(), word.end(), keyword.begin(), keyword.end(), [](char a, char b) {
+        return (a >= 'A' && a <= 'Z' ? static_cast<char>(a - 'A' + 'a') : a) == b;
+    });
 }
 
 double TextScan::number(std::string_view word, std::string_view what) const
@@ -129,8 +132,8 @@ double TextScan::number(std::string_view word, std::string_view what) const
         // from_chars reports underflow and overflow alike and stores nothing. The exponent's sign tells them apart
         // in every number that a program writes; without an exponent, overflow takes over 300 digits before the point.
         const std::size_t e = digits.find_first_of("eE");
-        const bool tiny = e != std::string_view::npos ? e + 1 < digits.size() && digits[e + 1] == '-'
-                                                      : digits.find('.') < 300;
+        const bool tiny =
+            e != std::string_view::npos ? e + 1 < digits.size() && digits[e + 1] == '-' : digits.find('.') < 300;
         if (tiny)
             return digits.starts_with('-') ? -0.0 : 0.0;
         fail(std::string(what) + " '" + printable(word) + "' is too large for a double");

@@ -28,7 +28,8 @@ public:
     bool next_line();
     /// The next word of this line; empty at its end.
     std::string_view word();
-    /// The next word, going on to following lines if need be; at the end of the file, an error that says what is missing.
+    /// The next word, going on to following lines if need be; at the end of the file, an error that says what is
+    /// missing.
     std::string_view word_across_lines(std::string_view what);
 
     std::size_t line() const { return line_; }

@@ -52,7 +52,8 @@ TriangleMesh subdivide(const TriangleMesh& mesh)
     fine.triangles.reserve(4 * mesh.triangles.size());
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> midpoint;
     auto middle = [&](std::uint32_t a, std::uint32_t b) {
-        const auto [it, is_new] = midpoint.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(fine.vertices.size()));
+        const auto [it, is_new] =
+            midpoint.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(fine.vertices.size()));
         if (is_new)
             fine.vertices.push_back(0.5 * (mesh.vertices[a] + mesh.vertices[b]));
         return it->second;

@@ -17,10 +17,12 @@ class Charts {
 public:
     ChartFigure& at(const Chart& kind, const std::string& caption)
     {
-        const auto found = std::find_if(all_.begin(), all_.end(), [&](const ChartFigure& c) { return c.chart.title == kind.title; });
+        const auto found =
+            std::find_if(all_.begin(), all_.end(), [&](const ChartFigure& c) { return c.chart.title == kind.title; });
         return found != all_.end() ? *found : all_.emplace_back(ChartFigure{kind, caption, {}});
     }
-    static void point(ChartFigure& figure, const std::string& series, double x, double y, const Source& from, bool points_only = false)
+    static void point(ChartFigure& figure, const std::string& series, double x, double y, const Source& from,
+                      bool points_only = false)
     {
         if (!std::isfinite(x) || !std::isfinite(y))
             return;
@@ -36,7 +38,8 @@ public:
     std::vector<ChartFigure> drawn() // those with a line to see
     {
         std::erase_if(all_, [](const ChartFigure& c) {
-            return std::none_of(c.chart.series.begin(), c.chart.series.end(), [](const Series& s) { return s.points_only || s.x.size() > 1; });
+            return std::none_of(c.chart.series.begin(), c.chart.series.end(),
+                                [](const Series& s) { return s.points_only || s.x.size() > 1; });
         });
         return std::move(all_);
     }
@@ -47,7 +50,8 @@ private:
 
 std::string run_of(const Record& r) // of tightness
 {
-    return fmt::format("{}{}{}, {} nodes", r.word("input"), r.word("motion").empty() ? "" : ", ", r.word("motion"), html::digits(r.number("n")));
+    return fmt::format("{}{}{}, {} nodes", r.word("input"), r.word("motion").empty() ? "" : ", ", r.word("motion"),
+                       html::digits(r.number("n")));
 }
 
 } // namespace
@@ -60,8 +64,11 @@ std::vector<ChartFigure> scaling_charts(const Results& results)
         if (method.empty() || (input.empty() && r->number("vertices") != 30000))
             continue;
         const std::string what = input.empty() ? "the brain, 30,000 vertices" : input;
-        ChartFigure& chart = charts.at({"Time of one bound: " + what, "simulation nodes n", "µs for six directions", true, true, {}},
-                                       fmt::format("Time of one bound of the whole of {} (six directions) against the number of simulation nodes, one core.", escaped(what)));
+        ChartFigure& chart =
+            charts.at({"Time of one bound: " + what, "simulation nodes n", "µs for six directions", true, true, {}},
+                      fmt::format("Time of one bound of the whole of {} (six directions) against the number of "
+                                  "simulation nodes, one core.",
+                                  escaped(what)));
         Charts::point(chart, method, r->number("n"), r->number("ns_per_bound") / 1e3, r->at);
     }
     return charts.drawn();
@@ -74,9 +81,17 @@ std::vector<ChartFigure> level_charts(const Results& results)
         for (const Record* r : results.where({{"experiment", "tightness"}}))
             if (r->fields.contains("box_loss")) {
                 const std::string run = run_of(*r);
-                ChartFigure& chart = charts.at({fmt::format("{} ratio by level: {}", mean ? "Mean" : "Greatest", run), "BVH level (0: root)", "bound radius / true radius", false, true, {}},
-                                               fmt::format("{} ratio of bound radius to true radius over the frames, by level of the BVH: {}.", mean ? "Mean" : "Greatest", escaped(run)));
-                Charts::point(chart, r->word("method"), r->number("level"), r->number(mean ? "mean_ratio" : "max_ratio"), r->at);
+                ChartFigure& chart = charts.at(
+                    {fmt::format("{} ratio by level: {}", mean ? "Mean" : "Greatest", run),
+                     "BVH level (0: root)",
+                     "bound radius / true radius",
+                     false,
+                     true,
+                     {}},
+                    fmt::format("{} ratio of bound radius to true radius over the frames, by level of the BVH: {}.",
+                                mean ? "Mean" : "Greatest", escaped(run)));
+                Charts::point(chart, r->word("method"), r->number("level"),
+                              r->number(mean ? "mean_ratio" : "max_ratio"), r->at);
             }
     return charts.drawn();
 }
@@ -86,9 +101,11 @@ std::vector<ChartFigure> sweep_charts(const Results& results)
     Charts charts;
     for (const Record* r : results.where({{"experiment", "tightness"}, {"level", 0}}))
         if (!r->fields.contains("box_loss")) {
-            const std::string run = fmt::format("{}{}{}", r->word("input"), r->word("motion").empty() ? "" : ", ", r->word("motion"));
-            ChartFigure& chart = charts.at({"Ratio of the root: " + run, "simulation nodes n", "bound radius / true radius", true, true, {}},
-                                           fmt::format("Mean ratio of the root against the number of simulation nodes: {}.", escaped(run)));
+            const std::string run =
+                fmt::format("{}{}{}", r->word("input"), r->word("motion").empty() ? "" : ", ", r->word("motion"));
+            ChartFigure& chart = charts.at(
+                {"Ratio of the root: " + run, "simulation nodes n", "bound radius / true radius", true, true, {}},
+                fmt::format("Mean ratio of the root against the number of simulation nodes: {}.", escaped(run)));
             Charts::point(chart, r->word("method"), r->number("n"), r->number("mean_ratio"), r->at);
         }
     return charts.drawn();
@@ -100,9 +117,13 @@ std::vector<ChartFigure> loss_charts(const Results& results)
     for (const Record* r : results.where({{"experiment", "tightness"}}))
         if (r->fields.contains("box_loss") && (r->word("method") == "eq12" || r->word("method") == "best")) {
             const std::string run = run_of(*r);
-            ChartFigure& chart = charts.at({"What is lost: " + run, "BVH level (0: root)", "loss per direction / true radius", false, false, {}},
-                                           fmt::format("What the paper’s Eq. 12 and the default give away, by exact attribution, as a share of the true radius: {}.", escaped(run)));
-            for (const auto& [field, name] : {std::pair("box_loss", "box"), std::pair("interval_loss", "interval"), std::pair("method_loss", "method")})
+            ChartFigure& chart = charts.at(
+                {"What is lost: " + run, "BVH level (0: root)", "loss per direction / true radius", false, false, {}},
+                fmt::format("What the paper’s Eq. 12 and the default give away, by exact attribution, as a share of "
+                            "the true radius: {}.",
+                            escaped(run)));
+            for (const auto& [field, name] : {std::pair("box_loss", "box"), std::pair("interval_loss", "interval"),
+                                              std::pair("method_loss", "method")})
                 Charts::point(chart, r->word("method") + ": " + name, r->number("level"), r->number(field), r->at);
         }
     return charts.drawn();
@@ -114,9 +135,13 @@ std::vector<ChartFigure> cost_charts(const Results& results)
     for (const Record* r : results.where({{"experiment", "cost"}, {"kdop", 6}}))
         if (!r->word("arithmetic").empty()) {
             const std::string what = r->word("input");
-            ChartFigure& chart = charts.at({"What accuracy costs: " + what + ", 6-DOP", "ns per BV", "bound radius / true radius", true, true, {}},
-                                           fmt::format("Every method in every arithmetic: looseness against time, {}, six directions, one core. Lower left is better.", escaped(what)));
-            Charts::point(chart, r->word("arithmetic"), r->number("ns_per_bound"), r->number("mean_ratio"), r->at, true);
+            ChartFigure& chart = charts.at(
+                {"What accuracy costs: " + what + ", 6-DOP", "ns per BV", "bound radius / true radius", true, true, {}},
+                fmt::format("Every method in every arithmetic: looseness against time, {}, six directions, one core. "
+                            "Lower left is better.",
+                            escaped(what)));
+            Charts::point(chart, r->word("arithmetic"), r->number("ns_per_bound"), r->number("mean_ratio"), r->at,
+                          true);
         }
     return charts.drawn();
 }
@@ -128,9 +153,12 @@ std::vector<ChartFigure> simulation_charts(const Results& results)
         const std::string scene = r->word("simulation");
         if (scene.empty())
             continue;
-        ChartFigure& chart = charts.at({"Error against time: " + scene, "seconds per simulated second", "relative error", true, true, {}},
-                                       fmt::format("Error of the simulation nodes’ positions at the end against computing time, {}.", escaped(scene)));
-        Charts::point(chart, r->word("energy") + ", " + r->word("integrator"), r->number("seconds_per_simulated_second"), r->number("error"), r->at);
+        ChartFigure& chart = charts.at(
+            {"Error against time: " + scene, "seconds per simulated second", "relative error", true, true, {}},
+            fmt::format("Error of the simulation nodes’ positions at the end against computing time, {}.",
+                        escaped(scene)));
+        Charts::point(chart, r->word("energy") + ", " + r->word("integrator"),
+                      r->number("seconds_per_simulated_second"), r->number("error"), r->at);
     }
     return charts.drawn();
 }
@@ -140,14 +168,19 @@ std::vector<ChartFigure> collide_charts(const Results& results)
     Charts charts;
     for (const Record* r : results.where({{"experiment", "collide"}})) {
         const auto pairs = r->fields.find("pairs_of_frame"), ms = r->fields.find("total_ms_of_frame");
-        if (pairs == r->fields.end() || ms == r->fields.end() || !pairs->is_array() || !ms->is_array() || pairs->size() != ms->size())
+        if (pairs == r->fields.end() || ms == r->fields.end() || !pairs->is_array() || !ms->is_array() ||
+            pairs->size() != ms->size())
             continue;
         const std::string scene = r->word("scene");
-        ChartFigure& chart = charts.at({scene + ": time per frame", "intersecting triangle pairs in the frame", "ms per frame", false, true, {}},
-                                       fmt::format("Time of a frame against its intersecting pairs of triangles, {}; a point per frame and backend.", escaped(scene)));
+        ChartFigure& chart = charts.at(
+            {scene + ": time per frame", "intersecting triangle pairs in the frame", "ms per frame", false, true, {}},
+            fmt::format(
+                "Time of a frame against its intersecting pairs of triangles, {}; a point per frame and backend.",
+                escaped(scene)));
         for (std::size_t f = 0; f < pairs->size(); ++f)
             if ((*pairs)[f].is_number() && (*ms)[f].is_number())
-                Charts::point(chart, r->word("backend"), (*pairs)[f].get<double>(), (*ms)[f].get<double>(), r->at, true);
+                Charts::point(chart, r->word("backend"), (*pairs)[f].get<double>(), (*ms)[f].get<double>(), r->at,
+                              true);
     }
     return charts.drawn();
 }
@@ -157,9 +190,11 @@ std::vector<ChartFigure> verify_charts(const Results& results)
     Charts charts;
     for (const Record* r : results.where({{"experiment", "verify"}}))
         if (r->fields.contains("level") && r->fields.contains("mean_ratio")) {
-            const std::string what = fmt::format("{}, {}, {}-DOP", r->word("input"), r->word("method"), html::digits(r->number("kdop")));
-            ChartFigure& chart = charts.at({"Ratio by level: " + what, "BVH level (0: root)", "bound radius / true radius", false, false, {}},
-                                           fmt::format("Ratio of bound radius to true radius by level of the BVH: {}.", escaped(what)));
+            const std::string what =
+                fmt::format("{}, {}, {}-DOP", r->word("input"), r->word("method"), html::digits(r->number("kdop")));
+            ChartFigure& chart = charts.at(
+                {"Ratio by level: " + what, "BVH level (0: root)", "bound radius / true radius", false, false, {}},
+                fmt::format("Ratio of bound radius to true radius by level of the BVH: {}.", escaped(what)));
             Charts::point(chart, "mean", r->number("level"), r->number("mean_ratio"), r->at);
             Charts::point(chart, "greatest", r->number("level"), r->number("max_ratio"), r->at);
         }
@@ -169,8 +204,9 @@ std::vector<ChartFigure> verify_charts(const Results& results)
 std::vector<ChartFigure> charts_of(const Results& results)
 {
     std::vector<ChartFigure> all;
-    for (const auto& charts : {scaling_charts(results), level_charts(results), sweep_charts(results), loss_charts(results), cost_charts(results), simulation_charts(results),
-                               collide_charts(results), verify_charts(results)})
+    for (const auto& charts :
+         {scaling_charts(results), level_charts(results), sweep_charts(results), loss_charts(results),
+          cost_charts(results), simulation_charts(results), collide_charts(results), verify_charts(results)})
         all.insert(all.end(), charts.begin(), charts.end());
     return all;
 }

@@ -14,12 +14,15 @@ using html::percent;
 
 CollideTimes collide_times(const Results& results, const std::string& scene, const char* backend)
 {
-    const auto found = results.where({{"experiment", "collide"}, {"scene", scene}, {"backend", backend}, {"cold", false}});
+    const auto found =
+        results.where({{"experiment", "collide"}, {"scene", scene}, {"backend", backend}, {"cold", false}});
     if (found.empty())
         return {};
     const Record& r = *found.front();
     auto number = [&](const char* field) { return Results::number(r, field); };
-    CollideTimes times{number("evaluate_ms"), {}, number("query_ms"), number("total_ms"), number("mean_vertices"), number("vertices") * number("bodies")};
+    CollideTimes times{number("evaluate_ms"),   {},
+                       number("query_ms"),      number("total_ms"),
+                       number("mean_vertices"), number("vertices") * number("bodies")};
     times.refit = times.evaluate + number("update_ms");
     return times;
 }
@@ -35,24 +38,39 @@ Traced avoided_evaluation(const CollideTimes& full, const CollideTimes& lazy)
 
 std::string ring_scene(int number) { return fmt::format("santa-ring-{}", number); }
 
-std::string why_gain(const Results& results, const std::string& scene, double paper_full, double paper_total, double paper_gain)
+std::string why_gain(const Results& results, const std::string& scene, double paper_full, double paper_total,
+                     double paper_gain)
 {
-    const CollideTimes full = collide_times(results, scene, "refit-1"), eq12 = collide_times(results, scene, "eq12-aabb"), clusters = collide_times(results, scene, "refit-16"),
+    const CollideTimes full = collide_times(results, scene, "refit-1"),
+                       eq12 = collide_times(results, scene, "eq12-aabb"),
+                       clusters = collide_times(results, scene, "refit-16"),
                        own = collide_times(results, scene, "cinch");
     const Traced gain = full.total / eq12.total;
-    std::string why = gain.value >= 1 ? fmt::format("Eq. 12 on demand is {} times faster than a full update, in the paper {:g}.", figure(gain), paper_gain)
-                                      : fmt::format("Eq. 12 on demand takes {} times as long as a full update; in the paper it was {:g} times faster.", figure(eq12.total / full.total), paper_gain);
+    std::string why =
+        gain.value >= 1
+            ? fmt::format("Eq. 12 on demand is {} times faster than a full update, in the paper {:g}.", figure(gain),
+                          paper_gain)
+            : fmt::format(
+                  "Eq. 12 on demand takes {} times as long as a full update; in the paper it was {:g} times faster.",
+                  figure(eq12.total / full.total), paper_gain);
     if (gain.value < paper_gain)
-        why += fmt::format(" Since then the full update has become {} times faster, Eq. 12 {} times: to evaluate all vertices in order gains more from SIMD than bounds on demand do.",
+        why += fmt::format(" Since then the full update has become {} times faster, Eq. 12 {} times: to evaluate all "
+                           "vertices in order gains more from SIMD than bounds on demand do.",
                            figure(paper_full / full.total), figure(paper_total / eq12.total));
-    if (const Traced avoided = avoided_evaluation(full, eq12), saved = full.total - eq12.total, share = avoided / saved; avoided.known()) {
-        why += fmt::format(" It evaluates {} of {} vertices per frame; the evaluation that it avoids is {} of the full update", figure(eq12.vertices), figure(eq12.all_vertices), percent(avoided / full.total));
-        why += saved.value <= 0 ? ", too little to pay for its bounds." : share.value <= 1 ? fmt::format(" and {} of the gain.", percent(share)) : ", more than is gained: its bounds cost the rest.";
+    if (const Traced avoided = avoided_evaluation(full, eq12), saved = full.total - eq12.total, share = avoided / saved;
+        avoided.known()) {
+        why += fmt::format(
+            " It evaluates {} of {} vertices per frame; the evaluation that it avoids is {} of the full update",
+            figure(eq12.vertices), figure(eq12.all_vertices), percent(avoided / full.total));
+        why += saved.value <= 0   ? ", too little to pay for its bounds."
+               : share.value <= 1 ? fmt::format(" and {} of the gain.", percent(share))
+                                  : ", more than is gained: its bounds cost the rest.";
     }
     if (clusters.known())
         why += fmt::format(" A full refit with 16-triangle leaves alone gains {}", figure(full.total / clusters.total));
     if (own.known())
-        why += fmt::format("{} the default here, on the same leaves, {}", clusters.known() ? ";" : "", figure(full.total / own.total));
+        why += fmt::format("{} the default here, on the same leaves, {}", clusters.known() ? ";" : "",
+                           figure(full.total / own.total));
     return why + (clusters.known() || own.known() ? "." : "");
 }
 

@@ -25,6 +25,7 @@ Traced avoided_evaluation(const CollideTimes& full, const CollideTimes& lazy);
 std::string ring_scene(int number);
 
 /// Table 4 and Fig. 7: why the gain is what it is. HTML.
-std::string why_gain(const Results& results, const std::string& scene, double paper_full, double paper_total, double paper_gain);
+std::string why_gain(const Results& results, const std::string& scene, double paper_full, double paper_total,
+                     double paper_gain);
 
 } // namespace cinch

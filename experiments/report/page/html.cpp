@@ -26,7 +26,9 @@ std::string places(const std::vector<Source>& from)
             std::size_t end = i + 1;
             while (end < lines.size() && lines[end] <= lines[end - 1] + 1)
                 ++end;
-            text += (text.empty() ? "" : ", ") + (lines[end - 1] > lines[i] ? fmt::format("{}–{}", lines[i], lines[end - 1]) : std::to_string(lines[i]));
+            text +=
+                (text.empty() ? "" : ", ") +
+                (lines[end - 1] > lines[i] ? fmt::format("{}–{}", lines[i], lines[end - 1]) : std::to_string(lines[i]));
             count += lines[end - 1] - lines[i] + 1;
             i = end;
         }
@@ -68,12 +70,23 @@ std::string escaped(std::string_view text)
     std::string out;
     for (const char c : text)
         switch (c) {
-        case '<': out += "&lt;"; break;
-        case '>': out += "&gt;"; break;
-        case '&': out += "&amp;"; break;
-        case '"': out += "&quot;"; break;
-        case '\'': out += "&#39;"; break;
-        default: out += static_cast<unsigned char>(c) < 32 && c != '\n' && c != '\t' ? ' ' : c;
+        case '<':
+            out += "&lt;";
+            break;
+        case '>':
+            out += "&gt;";
+            break;
+        case '&':
+            out += "&amp;";
+            break;
+        case '"':
+            out += "&quot;";
+            break;
+        case '\'':
+            out += "&#39;";
+            break;
+        default:
+            out += static_cast<unsigned char>(c) < 32 && c != '\n' && c != '\t' ? ' ' : c;
         }
     return out;
 }
@@ -89,7 +102,10 @@ std::string digits(double x)
         return fmt::format("{:.2e}", x);
     if (size >= 999.5)
         return (x < 0 ? "−" : "") + grouped(static_cast<std::size_t>(size + 0.5));
-    const std::string text = size >= 99.95 ? fmt::format("{:.0f}", size) : size >= 9.995 ? fmt::format("{:.1f}", size) : size >= 0.9995 ? fmt::format("{:.2f}", size) : fmt::format("{:.3f}", size);
+    const std::string text = size >= 99.95    ? fmt::format("{:.0f}", size)
+                             : size >= 9.995  ? fmt::format("{:.1f}", size)
+                             : size >= 0.9995 ? fmt::format("{:.2f}", size)
+                                              : fmt::format("{:.3f}", size);
     return (x < 0 ? "−" : "") + text;
 }
 
@@ -99,28 +115,37 @@ std::string figure(const Traced& x, const std::string& text)
 {
     if (!x.known() || x.from.empty())
         return "<span class=\"none\">–</span>";
-    return fmt::format("<a class=\"f\" href=\"#{}\" title=\"{}\">{}</a>", escaped(anchor(x.from.front())), escaped(places(x.from)), escaped(text));
+    return fmt::format("<a class=\"f\" href=\"#{}\" title=\"{}\">{}</a>", escaped(anchor(x.from.front())),
+                       escaped(places(x.from)), escaped(text));
 }
 
 std::string figure(const Traced& x) { return figure(x, digits(x.value)); }
 
 std::string percent(const Traced& x) { return figure(x, fmt::format("{:.0f} %", 100 * x.value)); }
 
-std::string cell(const Traced& x, const std::string& text) { return fmt::format("<td class=\"n\">{}</td>", figure(x, text)); }
+std::string cell(const Traced& x, const std::string& text)
+{
+    return fmt::format("<td class=\"n\">{}</td>", figure(x, text));
+}
 std::string cell(const Traced& x) { return cell(x, digits(x.value)); }
 
 std::string paper_cell(const PaperFigure& x)
 {
-    return fmt::format("<td class=\"n p\" data-paper=\"{}, {}, {}\">{}</td>", x.place, x.row, x.column, x.value >= 999.5 ? digits(x.value) : fmt::format("{:g}", x.value));
+    return fmt::format("<td class=\"n p\" data-paper=\"{}, {}, {}\">{}</td>", x.place, x.row, x.column,
+                       x.value >= 999.5 ? digits(x.value) : fmt::format("{:g}", x.value));
 }
 
 std::string text_cell(std::string_view text, const char* css) { return raw_cell(escaped(text), css); }
 
-std::string raw_cell(const std::string& text, const char* css) { return *css ? fmt::format("<td class=\"{}\">{}</td>", css, text) : fmt::format("<td>{}</td>", text); }
+std::string raw_cell(const std::string& text, const char* css)
+{
+    return *css ? fmt::format("<td class=\"{}\">{}</td>", css, text) : fmt::format("<td>{}</td>", text);
+}
 
 std::string head_cell(const std::string& text, std::size_t columns)
 {
-    return columns == 1 ? fmt::format("<th scope=\"col\">{}</th>", text) : fmt::format("<th scope=\"colgroup\" colspan=\"{}\">{}</th>", columns, text);
+    return columns == 1 ? fmt::format("<th scope=\"col\">{}</th>", text)
+                        : fmt::format("<th scope=\"colgroup\" colspan=\"{}\">{}</th>", columns, text);
 }
 
 std::string row(const std::vector<std::string>& cells) { return "<tr>" + all_of(cells) + "</tr>\n"; }
@@ -130,25 +155,38 @@ std::string block(const std::vector<std::string>& rows, const char* css)
     return fmt::format("<tbody{}>\n{}</tbody>\n", *css ? fmt::format(" class=\"{}\"", css) : "", all_of(rows));
 }
 
-std::string table(const std::string& caption, const std::vector<std::string>& head_rows, const std::vector<std::string>& blocks)
+std::string table(const std::string& caption, const std::vector<std::string>& head_rows,
+                  const std::vector<std::string>& blocks)
 {
-    return fmt::format("<div class=\"table\"><table>\n<caption><div>{}</div></caption>\n<thead>\n{}</thead>\n{}</table></div>\n", caption, all_of(head_rows), all_of(blocks));
+    return fmt::format(
+        "<div class=\"table\"><table>\n<caption><div>{}</div></caption>\n<thead>\n{}</thead>\n{}</table></div>\n",
+        caption, all_of(head_rows), all_of(blocks));
 }
 
 std::string verdict(Verdict is, const std::string& sentence)
 {
-    return fmt::format("<strong class=\"{}\">{}</strong> {}", css_of(is), is == Verdict::same ? "Same." : is == Verdict::differs ? "Differs." : "Not measured.", sentence);
+    return fmt::format("<strong class=\"{}\">{}</strong> {}", css_of(is),
+                       is == Verdict::same      ? "Same."
+                       : is == Verdict::differs ? "Differs."
+                                                : "Not measured.",
+                       sentence);
 }
 
 std::string conclusion(std::size_t columns, Verdict is, const std::string& sentence)
 {
-    return fmt::format("<tr class=\"why\"><td colspan=\"{}\"><div>{}</div></td></tr>\n", columns, verdict(is, sentence));
+    return fmt::format("<tr class=\"why\"><td colspan=\"{}\"><div>{}</div></td></tr>\n", columns,
+                       verdict(is, sentence));
 }
 
 std::string claim(const std::string& says, const char* where, Verdict is, const std::string& sentence)
 {
-    return fmt::format("<li class=\"{}\"><p class=\"says\">{} <cite>{}</cite></p>\n<p>{}</p></li>\n", css_of(is), says, where,
-                       fmt::format("<strong class=\"{}\">{}</strong> {}", css_of(is), is == Verdict::same ? "Confirmed." : is == Verdict::differs ? "Not confirmed." : "Not measured.", sentence));
+    return fmt::format("<li class=\"{}\"><p class=\"says\">{} <cite>{}</cite></p>\n<p>{}</p></li>\n", css_of(is), says,
+                       where,
+                       fmt::format("<strong class=\"{}\">{}</strong> {}", css_of(is),
+                                   is == Verdict::same      ? "Confirmed."
+                                   : is == Verdict::differs ? "Not confirmed."
+                                                            : "Not measured.",
+                                   sentence));
 }
 
 std::string claims(const std::vector<std::string>& all) { return "<ul class=\"claims\">\n" + all_of(all) + "</ul>\n"; }
@@ -167,8 +205,12 @@ std::string chart(const ChartFigure& of)
     if (shown.series.empty())
         return "";
     const std::string places_text = places(of.from);
-    return fmt::format("<figure class=\"chart\">\n<div>{}</div>\n<figcaption>{} <span class=\"from\">{}</span></figcaption>\n</figure>\n", inlined(svg({shown}), shown.title), of.caption,
-                       of.from.empty() ? "" : fmt::format("<a class=\"f\" href=\"#{}\">{}</a>", escaped(anchor(of.from.front())), escaped(places_text)));
+    return fmt::format("<figure class=\"chart\">\n<div>{}</div>\n<figcaption>{} <span "
+                       "class=\"from\">{}</span></figcaption>\n</figure>\n",
+                       inlined(svg({shown}), shown.title), of.caption,
+                       of.from.empty() ? ""
+                                       : fmt::format("<a class=\"f\" href=\"#{}\">{}</a>",
+                                                     escaped(anchor(of.from.front())), escaped(places_text)));
 }
 
 } // namespace cinch::html

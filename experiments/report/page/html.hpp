@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "experiments/report/paper_figures.hpp"
 #include "experiments/report/chart.hpp"
+#include "experiments/report/paper_figures.hpp"
 #include "experiments/report/results.hpp"
 
 namespace cinch::html {
@@ -35,7 +35,8 @@ std::string row(const std::vector<std::string>& cells);
 /// One <tbody>; `css` may be empty.
 std::string block(const std::vector<std::string>& rows, const char* css = "");
 /// A whole table, which scrolls by itself where the page is too narrow. `caption` is HTML.
-std::string table(const std::string& caption, const std::vector<std::string>& head_rows, const std::vector<std::string>& blocks);
+std::string table(const std::string& caption, const std::vector<std::string>& head_rows,
+                  const std::vector<std::string>& blocks);
 
 /// Whether our answer is the paper's.
 enum class Verdict { same, differs, unknown };
@@ -47,7 +48,8 @@ std::string conclusion(std::size_t columns, Verdict is, const std::string& sente
 std::string claim(const std::string& says, const char* where, Verdict is, const std::string& sentence);
 std::string claims(const std::vector<std::string>& all);
 
-/// Charts as inline SVG, each as a figure with its caption (HTML) and the lines that it is drawn from. One that is empty is left out.
+/// Charts as inline SVG, each as a figure with its caption (HTML) and the lines that it is drawn from. One that is
+/// empty is left out.
 struct ChartFigure {
     Chart chart;
     std::string caption;

@@ -20,15 +20,18 @@ using html::escaped;
 
 std::string document(const std::string& title, const std::string& body)
 {
-    return fmt::format("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-                       "<title>{}</title>\n<style>\n{}</style>\n</head>\n<body>\n<main>\n{}</main>\n<script>\n{}</script>\n</body>\n</html>\n",
+    return fmt::format("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
+                       "content=\"width=device-width, initial-scale=1\">\n"
+                       "<title>{}</title>\n<style>\n{}</style>\n</head>\n<body>\n<main>\n{}</main>\n<script>\n{}</"
+                       "script>\n</body>\n</html>\n",
                        escaped(title), page_style, body, page_script);
 }
 
 std::vector<Section> sections_of(const Results& results)
 {
     std::vector<Section> all;
-    for (Section (*make)(const Results&) : {scaling_section, tightness_section, collide_section, cost_section, proof_section})
+    for (Section (*make)(const Results&) :
+         {scaling_section, tightness_section, collide_section, cost_section, proof_section})
         all.push_back(make(results));
     return all;
 }
@@ -47,10 +50,14 @@ std::string claims_section(const std::vector<Section>& sections, bool unknown_to
         return "";
     std::string sum = fmt::format("{} of {} hold here", count[html::Verdict::same], items.size());
     if (count[html::Verdict::differs])
-        sum += fmt::format(", {} {} not", count[html::Verdict::differs], count[html::Verdict::differs] == 1 ? "does" : "do");
+        sum += fmt::format(", {} {} not", count[html::Verdict::differs],
+                           count[html::Verdict::differs] == 1 ? "does" : "do");
     if (count[html::Verdict::unknown])
-        sum += fmt::format(", {} {} not measured", count[html::Verdict::unknown], count[html::Verdict::unknown] == 1 ? "is" : "are");
-    return html::section("claims", "What the paper says, and whether it holds here", html::paragraph(sum + ". Each answer is computed from the results below.") + html::claims(items));
+        sum += fmt::format(", {} {} not measured", count[html::Verdict::unknown],
+                           count[html::Verdict::unknown] == 1 ? "is" : "are");
+    return html::section("claims", "What the paper says, and whether it holds here",
+                         html::paragraph(sum + ". Each answer is computed from the results below.") +
+                             html::claims(items));
 }
 
 // Links of the parts that are there.
@@ -79,13 +86,18 @@ std::string partial_notice(const Results& results)
     for (const Record& record : results.all())
         if (const auto names = record.fields.find("missing"); names != record.fields.end() && names->is_array())
             for (const auto& name : *names)
-                if (name.is_string() && std::find(missing.begin(), missing.end(), name.get<std::string>()) == missing.end())
+                if (name.is_string() &&
+                    std::find(missing.begin(), missing.end(), name.get<std::string>()) == missing.end())
                     missing.push_back(name.get<std::string>());
-    return missing.empty() ? "" : fmt::format("<p class=\"damage\"><strong>Partial</strong>, without {}</p>\n", escaped(fmt::format("{}", fmt::join(missing, "; "))));
+    return missing.empty() ? ""
+                           : fmt::format("<p class=\"damage\"><strong>Partial</strong>, without {}</p>\n",
+                                         escaped(fmt::format("{}", fmt::join(missing, "; "))));
 }
 
-const char* reading = "“Here” is what this program measured; “paper / here” is the published figure over ours, so that with times a ratio above 1 says how many times faster it is here. Every figure of "
-                      "ours links to the line of results that it comes from, at the end of this page, with its command, seed, commit and machine. Grey italics are the paper’s own figures "
+const char* reading = "“Here” is what this program measured; “paper / here” is the published figure over ours, so that "
+                      "with times a ratio above 1 says how many times faster it is here. Every figure of "
+                      "ours links to the line of results that it comes from, at the end of this page, with its "
+                      "command, seed, commit and machine. Grey italics are the paper’s own figures "
                       "(3.4 GHz Pentium 4).";
 
 } // namespace
@@ -98,7 +110,8 @@ std::string command_page(const Results& results, const std::string& note)
         name = "cinch " + results.all().front().word("experiment");
         line = results.all().front().word("command");
     }
-    std::string body = fmt::format("<header>\n<h1>{}</h1>\n<p class=\"lead\"><code>{}</code></p>\n</header>\n", escaped(name), escaped(line));
+    std::string body = fmt::format("<header>\n<h1>{}</h1>\n<p class=\"lead\"><code>{}</code></p>\n</header>\n",
+                                   escaped(name), escaped(line));
     if (!note.empty())
         body += fmt::format("<p class=\"damage\"><strong>Not all of it:</strong> {}</p>\n", escaped(note));
     body += partial_notice(results);
@@ -121,15 +134,20 @@ std::string command_page(const Results& results, const std::string& note)
 std::string report_page(const Results& results, const ReportNotes& notes)
 {
     const std::vector<Section> sections = sections_of(results);
-    std::string body = "<header>\n<h1>Tight and efficient surface bounds, reproduced</h1>\n<p class=\"lead\">The tables and figures of D. Steinemann, M. Otaduy and M. Gross, "
-                       "<cite>Tight and efficient surface bounds in meshless animation</cite>, beside what <code>cinch</code> measures on this machine.</p>\n</header>\n";
+    std::string body = "<header>\n<h1>Tight and efficient surface bounds, reproduced</h1>\n<p class=\"lead\">The "
+                       "tables and figures of D. Steinemann, M. Otaduy and M. Gross, "
+                       "<cite>Tight and efficient surface bounds in meshless animation</cite>, beside what "
+                       "<code>cinch</code> measures on this machine.</p>\n</header>\n";
     for (const Damage& damage : notes.damage)
         body += fmt::format("<p class=\"damage\"><strong>Left out:</strong> {}</p>\n", escaped(describe(damage)));
     if (!notes.missing.empty())
-        body += fmt::format("<p class=\"missing\"><strong>Not run yet:</strong> {}</p>\n", escaped(fmt::format("{}", fmt::join(notes.missing, "; "))));
+        body += fmt::format("<p class=\"missing\"><strong>Not run yet:</strong> {}</p>\n",
+                            escaped(fmt::format("{}", fmt::join(notes.missing, "; "))));
     for (const Record& record : results.all())
         if (is_closing(record) && record.number("status") != 0)
-            body += fmt::format("<p class=\"damage\"><strong>A check failed:</strong> {}: <code>{}</code> ended with exit status {}</p>\n", escaped(record.word("stage")), escaped(record.word("measured_by")),
+            body += fmt::format("<p class=\"damage\"><strong>A check failed:</strong> {}: <code>{}</code> ended with "
+                                "exit status {}</p>\n",
+                                escaped(record.word("stage")), escaped(record.word("measured_by")),
                                 html::figure(Results::number(record, "status")));
     body += partial_notice(results);
     const std::string claims = claims_section(sections, true);

@@ -8,10 +8,12 @@
 
 namespace cinch {
 
-/// A self-contained page of one command's records. `note`: why they are not all of them, first of all; then it judges no claim.
+/// A self-contained page of one command's records. `note`: why they are not all of them, first of all; then it judges
+/// no claim.
 std::string command_page(const Results& results, const std::string& note = {});
 
-/// The page of `cinch reproduce`: all parts, the paper's claims, where everything comes from, what is damaged or not there yet.
+/// The page of `cinch reproduce`: all parts, the paper's claims, where everything comes from, what is damaged or not
+/// there yet.
 struct ReportNotes {
     std::vector<Damage> damage;
     std::vector<std::string> missing; ///< experiments not run yet, for people

@@ -23,7 +23,9 @@ std::string value_cell(const Record& record, const std::string& field)
         return html::cell(Results::number(record, field.c_str()));
     if (value.is_string())
         return html::text_cell(value.get<std::string>());
-    return html::text_cell(value.is_null() ? "–" : value.is_boolean() ? (value.get<bool>() ? "yes" : "no") : value.dump(-1, ' ', false, Json::error_handler_t::replace));
+    return html::text_cell(value.is_null()      ? "–"
+                           : value.is_boolean() ? (value.get<bool>() ? "yes" : "no")
+                                                : value.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 /// Fields that a table shows: neither provenance nor series.
@@ -47,7 +49,8 @@ std::string shortened(const Record& r)
     for (const auto& [name, value] : r.fields.items())
         if (value.is_primitive() && (!value.is_string() || value.get_ref<const std::string&>().size() <= 1000))
             rest[name] = value;
-    return fmt::format("{} … {} bytes in all", rest.dump(-1, ' ', false, Json::error_handler_t::replace), grouped(r.text.size()));
+    return fmt::format("{} … {} bytes in all", rest.dump(-1, ' ', false, Json::error_handler_t::replace),
+                       grouped(r.text.size()));
 }
 
 } // namespace
@@ -57,7 +60,8 @@ std::string record_tables(const Results& results)
     std::vector<std::pair<std::vector<std::string>, std::vector<const Record*>>> groups;
     for (const Record& record : results.all()) {
         const auto columns = columns_of(record);
-        auto found = std::find_if(groups.begin(), groups.end(), [&](const auto& group) { return group.first == columns; });
+        auto found =
+            std::find_if(groups.begin(), groups.end(), [&](const auto& group) { return group.first == columns; });
         if (found == groups.end())
             found = groups.insert(groups.end(), {columns, {}});
         found->second.push_back(&record);
@@ -94,7 +98,9 @@ std::string provenance_section(const Results& results)
             continue;
         }
         const auto same = [&](const Run& run) {
-            return run.first->at.file == r.at.file && std::all_of(traced.begin(), traced.end(), [&](const char* field) { return run.first->fields.value(field, Json()) == r.fields.value(field, Json()); });
+            return run.first->at.file == r.at.file && std::all_of(traced.begin(), traced.end(), [&](const char* field) {
+                       return run.first->fields.value(field, Json()) == r.fields.value(field, Json());
+                   });
         };
         if (runs.empty() || !same(runs.back()))
             runs.push_back({&r, r.at.line});
@@ -104,18 +110,27 @@ std::string provenance_section(const Results& results)
     for (const Run& run : runs) {
         const Record& r = *run.first;
         const Record* closing = run.closing;
-        const std::size_t threads = r.number("threads") > 0 ? static_cast<std::size_t>(std::min(r.number("threads"), 1e6)) : 0;
-        rows.push_back(html::row({html::raw_cell(fmt::format("<a class=\"f\" href=\"#{}\">{}.jsonl</a>, {}–{}", escaped(html::anchor(r.at)), escaped(r.at.file), r.at.line, run.last), "l"),
-                                  html::raw_cell("<code>" + escaped(r.word("command")) + "</code>", "l"), html::cell(Results::number(r, "seed")), html::raw_cell("<code>" + escaped(r.word("commit")) + "</code>"),
-                                  html::text_cell(fmt::format("{}, {}, {}", r.word("cpu"), r.word("simd_target"), counted(threads, "thread", "threads"))),
-                                  closing ? html::cell(Results::number(*closing, "seconds"), duration(closing->number("seconds"))) : html::text_cell(""),
-                                  html::text_cell(closing ? closing->word("finished") : "")}));
+        const std::size_t threads =
+            r.number("threads") > 0 ? static_cast<std::size_t>(std::min(r.number("threads"), 1e6)) : 0;
+        rows.push_back(html::row(
+            {html::raw_cell(fmt::format("<a class=\"f\" href=\"#{}\">{}.jsonl</a>, {}–{}", escaped(html::anchor(r.at)),
+                                        escaped(r.at.file), r.at.line, run.last),
+                            "l"),
+             html::raw_cell("<code>" + escaped(r.word("command")) + "</code>", "l"),
+             html::cell(Results::number(r, "seed")), html::raw_cell("<code>" + escaped(r.word("commit")) + "</code>"),
+             html::text_cell(fmt::format("{}, {}, {}", r.word("cpu"), r.word("simd_target"),
+                                         counted(threads, "thread", "threads"))),
+             closing ? html::cell(Results::number(*closing, "seconds"), duration(closing->number("seconds")))
+                     : html::text_cell(""),
+             html::text_cell(closing ? closing->word("finished") : "")}));
     }
-    return html::section("provenance", "Provenance: where everything comes from",
-                         html::table("Command, seed, commit and machine of every line.",
-                                     {html::row({html::head_cell("file, lines"), html::head_cell("command"), html::head_cell("seed"), html::head_cell("commit"), html::head_cell("machine"),
-                                                 html::head_cell("took"), html::head_cell("finished")})},
-                                     {html::block(rows)}));
+    return html::section(
+        "provenance", "Provenance: where everything comes from",
+        html::table("Command, seed, commit and machine of every line.",
+                    {html::row({html::head_cell("file, lines"), html::head_cell("command"), html::head_cell("seed"),
+                                html::head_cell("commit"), html::head_cell("machine"), html::head_cell("took"),
+                                html::head_cell("finished")})},
+                    {html::block(rows)}));
 }
 
 std::string lines_section(const Results& results)
@@ -123,10 +138,12 @@ std::string lines_section(const Results& results)
     std::string body, file;
     for (const Record& r : results.all()) {
         if (r.at.file != file) {
-            body += fmt::format("{}<details><summary>{}.jsonl</summary>\n<ol class=\"lines\">\n", file.empty() ? "" : "</ol></details>\n", escaped(r.at.file));
+            body += fmt::format("{}<details><summary>{}.jsonl</summary>\n<ol class=\"lines\">\n",
+                                file.empty() ? "" : "</ol></details>\n", escaped(r.at.file));
             file = r.at.file;
         }
-        body += fmt::format("<li id=\"{}\" value=\"{}\"><code>{}</code></li>\n", escaped(html::anchor(r.at)), r.at.line, escaped(shortened(r)));
+        body += fmt::format("<li id=\"{}\" value=\"{}\"><code>{}</code></li>\n", escaped(html::anchor(r.at)), r.at.line,
+                            escaped(shortened(r)));
     }
     return body.empty() ? "" : html::section("lines", "Lines of results", body + "</ol></details>\n");
 }

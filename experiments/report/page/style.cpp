@@ -3,7 +3,8 @@
 
 namespace cinch {
 
-const char* const page_style = R"css(:root { --ink: #1c2126; --soft: #5d6670; --line: #d9dde1; --wash: #f5f6f7; --link: #0b5c92; --same: #1a7346; --differs: #b4460f; --unknown: #6b7280; }
+const char* const page_style =
+    R"css(:root { --ink: #1c2126; --soft: #5d6670; --line: #d9dde1; --wash: #f5f6f7; --link: #0b5c92; --same: #1a7346; --differs: #b4460f; --unknown: #6b7280; }
 * { box-sizing: border-box; }
 html { color-scheme: light; scroll-behavior: smooth; -webkit-text-size-adjust: 100%; }
 body { margin: 0; color: var(--ink); background: #fff; font: 16px/1.55 system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", "DejaVu Sans", sans-serif; }

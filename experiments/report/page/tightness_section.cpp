@@ -7,10 +7,10 @@
 namespace cinch {
 namespace {
 
-using html::Verdict;
 using html::cell;
 using html::figure;
 using html::percent;
+using html::Verdict;
 
 constexpr const char* scene = "brain-pull";
 constexpr std::size_t nodes = 509;
@@ -18,7 +18,8 @@ constexpr std::size_t nodes = 509;
 /// Of the root in the whole run, whose looseness is attributed; sweeps over simulation nodes have coarser trees.
 Traced root(const Results& results, const char* method, const char* field)
 {
-    for (const Record* r : results.where({{"experiment", "tightness"}, {"input", scene}, {"method", method}, {"n", nodes}, {"level", 0}}))
+    for (const Record* r :
+         results.where({{"experiment", "tightness"}, {"input", scene}, {"method", method}, {"n", nodes}, {"level", 0}}))
         if (r->fields.contains("box_loss"))
             return Results::number(*r, field);
     return {};
@@ -26,7 +27,8 @@ Traced root(const Results& results, const char* method, const char* field)
 
 Traced root_of_sweep(const Results& results, const char* method, std::size_t n)
 {
-    for (const Record* r : results.where({{"experiment", "tightness"}, {"input", scene}, {"method", method}, {"n", n}, {"level", 0}}))
+    for (const Record* r :
+         results.where({{"experiment", "tightness"}, {"input", scene}, {"method", method}, {"n", n}, {"level", 0}}))
         if (!r->fields.contains("box_loss"))
             return Results::number(*r, "mean_ratio");
     return {};
@@ -35,7 +37,8 @@ Traced root_of_sweep(const Results& results, const char* method, std::size_t n)
 /// How much of what Eq. 12 gives away at the root has this cause.
 Traced share(const Results& results, const char* loss)
 {
-    return root(results, "eq12", loss) / (root(results, "eq12", "box_loss") + root(results, "eq12", "interval_loss") + root(results, "eq12", "method_loss"));
+    return root(results, "eq12", loss) / (root(results, "eq12", "box_loss") + root(results, "eq12", "interval_loss") +
+                                          root(results, "eq12", "method_loss"));
 }
 
 std::string causes(const Results& results)
@@ -43,9 +46,12 @@ std::string causes(const Results& results)
     const Traced box = share(results, "box_loss"), interval = share(results, "interval_loss");
     if (!box.known() || !interval.known())
         return "";
-    return fmt::format(" Of what Eq. 12 gives away at the root, {} is due to transforming one rest box by every simulation node, {} to weight intervals in place of weights, {} to the method itself; "
-                       "boxes of each simulation node’s own vertices and rest support take away most of the first, so that the default’s ratio is {} on average.",
-                       percent(box), percent(interval), percent(share(results, "method_loss")), figure(root(results, "best", "mean_ratio")));
+    return fmt::format(" Of what Eq. 12 gives away at the root, {} is due to transforming one rest box by every "
+                       "simulation node, {} to weight intervals in place of weights, {} to the method itself; "
+                       "boxes of each simulation node’s own vertices and rest support take away most of the first, so "
+                       "that the default’s ratio is {} on average.",
+                       percent(box), percent(interval), percent(share(results, "method_loss")),
+                       figure(root(results, "best", "mean_ratio")));
 }
 
 struct Row {
@@ -58,19 +64,28 @@ struct Row {
 
 std::string block_of(const Results& results, const Row& r)
 {
-    std::vector<std::string> rows{html::row({html::raw_cell(r.label, "l"), html::paper_cell(r.paper), cell(r.eq12), cell(r.paper.value / r.eq12), cell(r.best), cell(r.paper.value / r.best)})};
+    std::vector<std::string> rows{
+        html::row({html::raw_cell(r.label, "l"), html::paper_cell(r.paper), cell(r.eq12), cell(r.paper.value / r.eq12),
+                   cell(r.best), cell(r.paper.value / r.best)})};
     if (!r.eq12.known()) {
         rows.push_back(html::conclusion(6, Verdict::unknown, ""));
         return html::block(rows);
     }
     // A ratio may exceed the paper's by a quarter: the brain and how it is pulled are not the paper's own.
-    const bool same = r.ours_may_be_less ? r.eq12.value <= 1.25 * r.paper.value : r.eq12.value >= r.paper.value / 4 && r.eq12.value >= 10;
-    std::string why = same ? r.says : r.ours_may_be_less ? fmt::format("Eq. 12’s root is {} times as large as the paper’s.", figure(r.eq12 / r.paper.value)) : "Spheres are closer to the bounds here.";
+    const bool same = r.ours_may_be_less ? r.eq12.value <= 1.25 * r.paper.value
+                                         : r.eq12.value >= r.paper.value / 4 && r.eq12.value >= 10;
+    std::string why = same                 ? r.says
+                      : r.ours_may_be_less ? fmt::format("Eq. 12’s root is {} times as large as the paper’s.",
+                                                         figure(r.eq12 / r.paper.value))
+                                           : "Spheres are closer to the bounds here.";
     if (r.ours_may_be_less)
         why += same ? fmt::format(" The default’s is {}.", figure(r.best)) : causes(results);
     else
-        why += fmt::format(" The default is up to {} times tighter than they are.{}", figure(r.best),
-                           same ? "" : " How loose accumulated spheres are depends on how far each simulation node’s transform is from the others over the whole surface, which here is less than in the paper’s pull.");
+        why += fmt::format(
+            " The default is up to {} times tighter than they are.{}", figure(r.best),
+            same ? ""
+                 : " How loose accumulated spheres are depends on how far each simulation node’s transform is from the "
+                   "others over the whole surface, which here is less than in the paper’s pull.");
     rows.push_back(html::conclusion(6, same ? Verdict::same : Verdict::differs, why));
     return html::block(rows);
 }
@@ -80,44 +95,69 @@ std::string attribution(const Results& results)
     std::vector<std::string> blocks;
     for (const char* method : {"eq12", "limited", "best"}) {
         std::vector<const Record*> levels;
-        for (const Record* r : results.where({{"experiment", "tightness"}, {"input", scene}, {"method", method}, {"n", nodes}}))
+        for (const Record* r :
+             results.where({{"experiment", "tightness"}, {"input", scene}, {"method", method}, {"n", nodes}}))
             if (r->fields.contains("box_loss"))
                 levels.push_back(r);
         std::vector<std::string> rows;
         for (std::size_t i = 0; i < levels.size(); ++i)
             if (i == 0 || i == levels.size() / 2 || i + 1 == levels.size())
-                rows.push_back(html::row({html::text_cell(rows.empty() ? method : "", "l"), cell(Results::number(*levels[i], "level")), cell(Results::number(*levels[i], "mean_ratio")),
-                                          cell(Results::number(*levels[i], "box_loss")), cell(Results::number(*levels[i], "interval_loss")), cell(Results::number(*levels[i], "method_loss"))}));
+                rows.push_back(html::row(
+                    {html::text_cell(rows.empty() ? method : "", "l"), cell(Results::number(*levels[i], "level")),
+                     cell(Results::number(*levels[i], "mean_ratio")), cell(Results::number(*levels[i], "box_loss")),
+                     cell(Results::number(*levels[i], "interval_loss")),
+                     cell(Results::number(*levels[i], "method_loss"))}));
         if (!rows.empty())
             blocks.push_back(html::block(rows));
     }
     if (blocks.empty())
         return "";
     return "<h3>Why bounds are loose</h3>\n" +
-           html::table("What each step gives away, computed exactly, as a share of the true radius: boxes at the vertices’ actual weights, weight intervals in place of weights, and the method; the last is "
-                       "negative where a method knows more of the weights than their intervals. Root, middle and leaves.",
-                       {html::row({html::head_cell("method"), html::head_cell("level"), html::head_cell("mean ratio"), html::head_cell("box"), html::head_cell("interval"), html::head_cell("method")})}, blocks);
+           html::table(
+               "What each step gives away, computed exactly, as a share of the true radius: boxes at the vertices’ "
+               "actual weights, weight intervals in place of weights, and the method; the last is "
+               "negative where a method knows more of the weights than their intervals. Root, middle and leaves.",
+               {html::row({html::head_cell("method"), html::head_cell("level"), html::head_cell("mean ratio"),
+                           html::head_cell("box"), html::head_cell("interval"), html::head_cell("method")})},
+               blocks);
 }
 
 std::vector<Claim> claims_of(const Results& results)
 {
     std::vector<Claim> claims;
     auto add = [&](const char* says, const char* where, const Traced& decides, bool confirmed, std::string answer) {
-        claims.push_back({says, where, !decides.known() ? Verdict::unknown : confirmed ? Verdict::same : Verdict::differs, decides.known() ? std::move(answer) : ""});
+        claims.push_back({says, where,
+                          !decides.known() ? Verdict::unknown
+                          : confirmed      ? Verdict::same
+                                           : Verdict::differs,
+                          decides.known() ? std::move(answer) : ""});
     };
     const Traced mean = root(results, "eq12", "mean_ratio"), most = root(results, "eq12", "max_ratio");
-    add("With 509 simulation nodes the root AABB is 1.5 times larger than the optimum on average, and at most 2.5 times.", "Fig. 5", mean, mean.value <= 1.25 * 1.5 && most.value <= 1.25 * 2.5,
-        fmt::format("With Eq. 12 it is {} times larger on average and at most {} times, by the default {} and {}.", figure(mean), figure(most), figure(root(results, "best", "mean_ratio")),
+    add("With 509 simulation nodes the root AABB is 1.5 times larger than the optimum on average, and at most 2.5 "
+        "times.",
+        "Fig. 5", mean, mean.value <= 1.25 * 1.5 && most.value <= 1.25 * 2.5,
+        fmt::format("With Eq. 12 it is {} times larger on average and at most {} times, by the default {} and {}.",
+                    figure(mean), figure(most), figure(root(results, "best", "mean_ratio")),
                     figure(root(results, "best", "max_ratio"))));
     const Traced spheres = root(results, "sphere", "max_ratio") / root(results, "eq12", "max_ratio");
-    add("It is up to 68 times tighter than accumulated spheres: orders of magnitude.", "Fig. 5", spheres, spheres.value >= 17,
-        fmt::format("Spheres, as reconstructed here, are {} times as large as Eq. 12’s root where both are loosest, {} times as large as the default’s.", figure(spheres),
+    add("It is up to 68 times tighter than accumulated spheres: orders of magnitude.", "Fig. 5", spheres,
+        spheres.value >= 17,
+        fmt::format("Spheres, as reconstructed here, are {} times as large as Eq. 12’s root where both are loosest, {} "
+                    "times as large as the default’s.",
+                    figure(spheres),
                     figure(root(results, "sphere", "max_ratio") / root(results, "best", "max_ratio"))));
-    const Traced few = root_of_sweep(results, "eq12", 65), growth = mean / few, spheres_growth = root(results, "sphere", "mean_ratio") / root_of_sweep(results, "sphere", 65);
-    add("Tightness does not suffer from more simulation nodes, as that of accumulated deformations does.", "Section 2", growth, growth.value <= 1.25,
-        fmt::format("From 65 to 509 simulation nodes the mean ratio of the root is multiplied by {} with Eq. 12, by {} with spheres, by {} with the default.{}", figure(growth), figure(spheres_growth),
+    const Traced few = root_of_sweep(results, "eq12", 65), growth = mean / few,
+                 spheres_growth = root(results, "sphere", "mean_ratio") / root_of_sweep(results, "sphere", 65);
+    add("Tightness does not suffer from more simulation nodes, as that of accumulated deformations does.", "Section 2",
+        growth, growth.value <= 1.25,
+        fmt::format("From 65 to 509 simulation nodes the mean ratio of the root is multiplied by {} with Eq. 12, by {} "
+                    "with spheres, by {} with the default.{}",
+                    figure(growth), figure(spheres_growth),
                     figure(root(results, "best", "mean_ratio") / root_of_sweep(results, "best", 65)),
-                    growth.value <= 1.25 ? "" : " The more simulation nodes, the further the most displaced of them carries the one rest box of the whole BV; a box of each node’s own vertices, as in the default, shrinks with them."));
+                    growth.value <= 1.25
+                        ? ""
+                        : " The more simulation nodes, the further the most displaced of them carries the one rest box "
+                          "of the whole BV; a box of each node’s own vertices, as in the default, shrinks with them."));
     return claims;
 }
 
@@ -127,20 +167,28 @@ Section tightness_section(const Results& results)
 {
     Section section{"fig-5", "Figs. 1 and 5: tightness", "", {}};
     if (!results.where({{"experiment", "tightness"}, {"input", scene}, {"n", nodes}}).empty()) {
-        const Traced spheres_eq12 = root(results, "sphere", "max_ratio") / root(results, "eq12", "max_ratio"), spheres_best = root(results, "sphere", "max_ratio") / root(results, "best", "max_ratio");
+        const Traced spheres_eq12 = root(results, "sphere", "max_ratio") / root(results, "eq12", "max_ratio"),
+                     spheres_best = root(results, "sphere", "max_ratio") / root(results, "best", "max_ratio");
         std::vector<std::string> blocks;
-        for (const Row& row : {Row{"Fig. 1: root, pulled hardest", paper_figure("Fig. 1", "root", "ratio"), root(results, "eq12", "max_ratio"), root(results, "best", "max_ratio"), true,
-                                   "Under the largest deformation the root is about twice the optimum, or less."},
-                               Row{"Fig. 5: root, mean over the frames", paper_figure("Fig. 5", "root", "mean"), root(results, "eq12", "mean_ratio"), root(results, "best", "mean_ratio"), true,
-                                   "The bound stays near the optimum, at a cost linear in the simulation nodes."},
-                               Row{"Fig. 5: root, greatest", paper_figure("Fig. 5", "root", "max"), root(results, "eq12", "max_ratio"), root(results, "best", "max_ratio"), true,
-                                   "In the loosest frame the root is within a quarter of the paper’s, or tighter."},
-                               Row{"Fig. 5: spheres over root, greatest", paper_figure("Fig. 5", "root", "spheres"), spheres_eq12, spheres_best, false,
-                                   "Spheres around accumulated deformations are looser by more than an order of magnitude."}})
+        for (const Row& row :
+             {Row{"Fig. 1: root, pulled hardest", paper_figure("Fig. 1", "root", "ratio"),
+                  root(results, "eq12", "max_ratio"), root(results, "best", "max_ratio"), true,
+                  "Under the largest deformation the root is about twice the optimum, or less."},
+              Row{"Fig. 5: root, mean over the frames", paper_figure("Fig. 5", "root", "mean"),
+                  root(results, "eq12", "mean_ratio"), root(results, "best", "mean_ratio"), true,
+                  "The bound stays near the optimum, at a cost linear in the simulation nodes."},
+              Row{"Fig. 5: root, greatest", paper_figure("Fig. 5", "root", "max"), root(results, "eq12", "max_ratio"),
+                  root(results, "best", "max_ratio"), true,
+                  "In the loosest frame the root is within a quarter of the paper’s, or tighter."},
+              Row{"Fig. 5: spheres over root, greatest", paper_figure("Fig. 5", "root", "spheres"), spheres_eq12,
+                  spheres_best, false,
+                  "Spheres around accumulated deformations are looser by more than an order of magnitude."}})
             blocks.push_back(block_of(results, row));
-        section.body = html::table("Radius (half diagonal) of the root’s AABB over that of the optimal one: the pulled brain, 30,000 vertices, 509 simulation nodes.",
-                                   {html::row({html::head_cell(""), html::head_cell("paper"), html::head_cell("Eq. 12, here"), html::head_cell("paper / here"), html::head_cell("default, here"),
-                                               html::head_cell("paper / here")})},
+        section.body = html::table("Radius (half diagonal) of the root’s AABB over that of the optimal one: the pulled "
+                                   "brain, 30,000 vertices, 509 simulation nodes.",
+                                   {html::row({html::head_cell(""), html::head_cell("paper"),
+                                               html::head_cell("Eq. 12, here"), html::head_cell("paper / here"),
+                                               html::head_cell("default, here"), html::head_cell("paper / here")})},
                                    blocks);
         section.body += attribution(results);
         section.claims = claims_of(results);

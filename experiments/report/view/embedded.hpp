@@ -7,6 +7,7 @@
 namespace cinch::embedded {
 
 extern const std::string_view view_css, view_js; ///< of this folder
-extern const std::string_view three_js;          ///< three.js and what the view needs of its examples; empty if it was not there at build
+extern const std::string_view
+    three_js; ///< three.js and what the view needs of its examples; empty if it was not there at build
 
 } // namespace cinch::embedded

@@ -10,15 +10,17 @@
 
 namespace cinch {
 
-/// The grid of a view: integer coordinates g stand for the point (g + origin)·step. Step is a power of two, so that v / step is exact
-/// (but for overflow and underflow, from which make() stays away) and all rounding is the one to whole numbers.
+/// The grid of a view: integer coordinates g stand for the point (g + origin)·step. Step is a power of two, so that v /
+/// step is exact (but for overflow and underflow, from which make() stays away) and all rounding is the one to whole
+/// numbers.
 class Grid {
 public:
     /// The finest one whose coordinates of all points in [low, high] are in [0, 2^bits). The points are finite.
     static Grid make(const Vec3& low, const Vec3& high, int bits)
     {
         Grid g;
-        const double extent = std::max((high - low).maxCoeff(), 1e-300), most = std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff());
+        const double extent = std::max((high - low).maxCoeff(), 1e-300),
+                     most = std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff());
         int exponent = std::ilogb(extent) - bits;
         exponent = std::max(exponent, std::ilogb(std::max(most, 1e-300)) - 52); // coordinates that long long holds
         for (;; ++exponent) {
@@ -43,8 +45,9 @@ public:
 
     /// A whole number that axis·point(v) does not exceed for any v with axis·v ≤ support, or `unbounded`.
     ///
-    /// Rounding moves each coordinate by 1/2 at most, so axis·(point(v) + origin) ≤ ⌈support / step⌉ + |axis|₁ / 2. Being whole it is
-    /// ≤ ⌈support / step⌉ + ⌊|axis|₁ / 2⌋; one coordinate alone (|axis|₁ = 1) is rounded monotonically.
+    /// Rounding moves each coordinate by 1/2 at most, so axis·(point(v) + origin) ≤ ⌈support / step⌉ + |axis|₁ / 2.
+    /// Being whole it is ≤ ⌈support / step⌉ + ⌊|axis|₁ / 2⌋; one coordinate alone (|axis|₁ = 1) is rounded
+    /// monotonically.
     std::int32_t support(const Axis& axis, bool against, double value) const
     {
         const double above = std::ceil(value / step);

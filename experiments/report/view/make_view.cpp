@@ -5,6 +5,10 @@
 
 #include <fmt/format.h>
 
+#include "cinch/bounds.hpp"
+#include "cinch/collider.hpp"
+#include "cinch/deform.hpp"
+#include "cinch/surface.hpp"
 #include "experiments/input.hpp"
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/or_leave.hpp"
@@ -13,20 +17,16 @@
 #include "experiments/report/view/grid.hpp"
 #include "experiments/report/view/pack.hpp"
 #include "experiments/simulation/find_scene.hpp"
-#include "cinch/bounds.hpp"
-#include "cinch/collider.hpp"
 #include "toolkit/deform/parallel.hpp"
-#include "cinch/deform.hpp"
 #include "toolkit/hierarchy/bounder.hpp"
-#include "cinch/surface.hpp"
 
 namespace cinch {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-// A body as the view draws it: triangles in the order of the BVH, so that a BV is a range of them, and the vertices that they use in
-// the order in which they do.
+// A body as the view draws it: triangles in the order of the BVH, so that a BV is a range of them, and the vertices
+// that they use in the order in which they do.
 struct DrawnBody {
     explicit DrawnBody(const Input& body) : input(body), bvh(build_bvh(body.surface, ClusterSize{16, 16}))
     {
@@ -55,7 +55,8 @@ struct DrawnBody {
 };
 
 // Positions of all drawn vertices of all bodies, frame after frame; refuses those that are not finite.
-std::vector<std::vector<Vec3>> evaluate(const std::vector<DrawnBody>& bodies, std::size_t frames, const std::string& scene)
+std::vector<std::vector<Vec3>> evaluate(const std::vector<DrawnBody>& bodies, std::size_t frames,
+                                        const std::string& scene)
 {
     std::vector<std::vector<Vec3>> all(frames);
     for (const DrawnBody& body : bodies) {
@@ -66,7 +67,9 @@ std::vector<std::vector<Vec3>> evaluate(const std::vector<DrawnBody>& bodies, st
             evaluator(body.input.clip.frame(f), positions);
             for (const std::uint32_t v : body.vertex) {
                 if (!positions[v].allFinite())
-                    throw InputError::in_file(scene, fmt::format("{}: vertex {} is not finite in frame {}; it cannot be drawn", body.input.name, v, f));
+                    throw InputError::in_file(scene,
+                                              fmt::format("{}: vertex {} is not finite in frame {}; it cannot be drawn",
+                                                          body.input.name, v, f));
                 all[f].push_back(positions[v]);
             }
         }
@@ -110,7 +113,8 @@ Json pack_corners(const std::vector<std::uint32_t>& corners)
     return pack(out, out.size(), 1, 1);
 }
 
-Json pack_positions(const std::vector<std::vector<Vec3>>& frames, const Grid& grid, const std::vector<std::uint32_t>& corners)
+Json pack_positions(const std::vector<std::vector<Vec3>>& frames, const Grid& grid,
+                    const std::vector<std::uint32_t>& corners)
 {
     std::vector<std::int32_t> out;
     out.reserve(frames.size() * frames[0].size() * 3);
@@ -121,8 +125,8 @@ Json pack_positions(const std::vector<std::vector<Vec3>>& frames, const Grid& gr
     return pack(out, frames.size(), frames[0].size(), 3, parallelograms(corners, frames[0].size()));
 }
 
-// Where the maps take the rest positions of the simulation nodes, of the bodies that have some. What is not finite or far away is
-// drawn nowhere.
+// Where the maps take the rest positions of the simulation nodes, of the bodies that have some. What is not finite or
+// far away is drawn nowhere.
 Json pack_nodes(const std::vector<DrawnBody>& bodies, std::size_t frames, const Grid& grid)
 {
     std::vector<std::int32_t> out;
@@ -136,7 +140,8 @@ Json pack_nodes(const std::vector<DrawnBody>& bodies, std::size_t frames, const 
                 for (int r = 0; r < 3; ++r)
                     p[r] = map.m[r][0] * x[0] + map.m[r][1] * x[1] + map.m[r][2] * x[2] + map.m[r][3];
                 const bool near = ((p / grid.step).array().abs() < 0x1p52).all();
-                const auto g = near ? grid.point(p) : std::array<std::int32_t, 3>{Grid::unbounded, Grid::unbounded, Grid::unbounded};
+                const auto g = near ? grid.point(p)
+                                    : std::array<std::int32_t, 3>{Grid::unbounded, Grid::unbounded, Grid::unbounded};
                 out.insert(out.end(), g.begin(), g.end());
             }
         }
@@ -170,8 +175,8 @@ struct DrawnBvs {
 };
 
 // Bounds of the first `frames` frames by one method, on the grid.
-std::vector<std::int32_t> bounds_by(Method method, const ViewRequest& request, const std::vector<DrawnBody>& bodies, const DrawnBvs& bvs, const Grid& grid,
-                                    std::size_t frames)
+std::vector<std::int32_t> bounds_by(Method method, const ViewRequest& request, const std::vector<DrawnBody>& bodies,
+                                    const DrawnBvs& bvs, const Grid& grid, std::size_t frames)
 {
     const auto k = static_cast<std::size_t>(request.kdop);
     const auto axes = axes_of(request.kdop);
@@ -192,13 +197,15 @@ std::vector<std::int32_t> bounds_by(Method method, const ViewRequest& request, c
             });
             for (std::size_t i = 0; i < bvs.bv.size(); ++i)
                 for (std::size_t d = 0; bvs.body[i] == b && d < k; ++d)
-                    out[(f * bvs.bv.size() + i) * k + d] = grid.support(axes[d / 2], d % 2 == 1, supports[bvs.bv[i] * k + d]);
+                    out[(f * bvs.bv.size() + i) * k + d] =
+                        grid.support(axes[d / 2], d % 2 == 1, supports[bvs.bv[i] * k + d]);
         }
     }
     return out;
 }
 
-// The triangles of each frame that intersect one of another body, ascending, frames one after the other; and how many pairs.
+// The triangles of each frame that intersect one of another body, ascending, frames one after the other; and how many
+// pairs.
 struct Contacts {
     std::vector<std::int32_t> triangle, triangles_in_frame, pairs_in_frame;
 };
@@ -226,7 +233,9 @@ Contacts contacts(const std::vector<DrawnBody>& bodies, std::size_t frames)
         collider.update(now);
         const std::vector<TrianglePair> pairs = collider.pairs();
         std::vector<std::int32_t> here;
-        auto add = [&](std::uint32_t body, std::uint32_t triangle) { here.push_back(static_cast<std::int32_t>(base[body] + bodies[body].place_of_triangle[triangle])); };
+        auto add = [&](std::uint32_t body, std::uint32_t triangle) {
+            here.push_back(static_cast<std::int32_t>(base[body] + bodies[body].place_of_triangle[triangle]));
+        };
         for (const TrianglePair& p : pairs) {
             add(p.body_a, p.triangle_a);
             add(p.body_b, p.triangle_b);
@@ -242,15 +251,23 @@ Contacts contacts(const std::vector<DrawnBody>& bodies, std::size_t frames)
 
 Json shown_first(const ViewRequest& request, std::size_t frames, std::size_t levels)
 {
-    return {{"method", name_of(request.method)}, {"level", std::min(request.level, levels - 1)},
-            {"frame", static_cast<std::size_t>(std::llround(std::clamp(request.time, 0.0, 1.0) * static_cast<double>(frames - 1)))},
-            {"surface", request.surface}, {"nodes", request.show_nodes}, {"bounds", request.show_bounds}, {"azimuth", request.azimuth}, {"elevation", request.elevation}};
+    return {{"method", name_of(request.method)},
+            {"level", std::min(request.level, levels - 1)},
+            {"frame", static_cast<std::size_t>(
+                          std::llround(std::clamp(request.time, 0.0, 1.0) * static_cast<double>(frames - 1)))},
+            {"surface", request.surface},
+            {"nodes", request.show_nodes},
+            {"bounds", request.show_bounds},
+            {"azimuth", request.azimuth},
+            {"elevation", request.elevation}};
 }
 
 void require_valid(const ViewRequest& request)
 {
-    if (request.frames < 1 || request.levels < 1 || request.bits < 8 || request.bits > 16 || !is_kdop(request.kdop) || request.methods.empty())
-        throw std::invalid_argument("view: frames and levels of at least 1, 8 to 16 bits, k = " + kdop_names() + ", and a method are needed");
+    if (request.frames < 1 || request.levels < 1 || request.bits < 8 || request.bits > 16 || !is_kdop(request.kdop) ||
+        request.methods.empty())
+        throw std::invalid_argument("view: frames and levels of at least 1, 8 to 16 bits, k = " + kdop_names() +
+                                    ", and a method are needed");
     if (std::find(request.methods.begin(), request.methods.end(), request.method) == request.methods.end())
         throw std::invalid_argument("view: the method shown first is not among the methods");
 }
@@ -280,14 +297,19 @@ nlohmann::ordered_json make_view(const ViewRequest& request)
     for (std::size_t f = 0; f < frames; ++f)
         times.push_back(inputs.bodies[0].clip.time_s(f));
     const DrawnBvs bvs(bodies, request.levels);
-    Json view{{"title", request.title.empty() ? inputs.name : request.title}, {"text", request.text}, {"scene", request.scene}};
+    Json view{{"title", request.title.empty() ? inputs.name : request.title},
+              {"text", request.text},
+              {"scene", request.scene}};
     view["missing"] = inputs.missing();
     view["first"] = shown_first(request, frames, bvs.level.size() - 1);
     view["time_s"] = times;
     view["bodies"] = Json::array();
     for (const DrawnBody& body : bodies)
-        view["bodies"].push_back({{"name", body.input.name}, {"vertices", body.vertex.size()}, {"triangles", body.bvh.triangle.size()},
-                                  {"nodes", body.input.surface.weights.node_count}, {"drawn_nodes", body.input.nodes.size()}});
+        view["bodies"].push_back({{"name", body.input.name},
+                                  {"vertices", body.vertex.size()},
+                                  {"triangles", body.bvh.triangle.size()},
+                                  {"nodes", body.input.surface.weights.node_count},
+                                  {"drawn_nodes", body.input.nodes.size()}});
     view["kdop"] = request.kdop;
     view["bvs"] = {{"level", bvs.level}, {"first", bvs.first}, {"count", bvs.count}};
     {
@@ -304,7 +326,9 @@ nlohmann::ordered_json make_view(const ViewRequest& request)
         std::size_t done = 0;
         for (const Method method : request.methods) {
             try {
-                view["bounds"][std::string(name_of(method))] = pack(bounds_by(method, request, bodies, bvs, grid, frames), frames, bvs.bv.size(), static_cast<std::size_t>(request.kdop));
+                view["bounds"][std::string(name_of(method))] =
+                    pack(bounds_by(method, request, bodies, bvs, grid, frames), frames, bvs.bv.size(),
+                         static_cast<std::size_t>(request.kdop));
             } catch (const Interrupted&) {
                 if (done == 0)
                     throw;
@@ -319,7 +343,9 @@ nlohmann::ordered_json make_view(const ViewRequest& request)
     } catch (const Interrupted&) { // the view is whole but for these, and says nothing of them
     }
     if (!found.pairs_in_frame.empty())
-        view["contacts"] = {{"pairs", found.pairs_in_frame}, {"count", found.triangles_in_frame}, {"triangles", pack(found.triangle, 1, found.triangle.size(), 1)}};
+        view["contacts"] = {{"pairs", found.pairs_in_frame},
+                            {"count", found.triangles_in_frame},
+                            {"triangles", pack(found.triangle, 1, found.triangle.size(), 1)}};
     return view;
 }
 
@@ -328,7 +354,8 @@ std::vector<ViewRequest> report_views()
     ViewRequest brain;
     brain.scene = "brain-pull";
     brain.title = "Fig. 1: a brain, pulled";
-    brain.text = "30,000 vertices follow 509 simulation nodes. The outer box is the bound, in time linear in the nodes; the inner one is the vertices' own. "
+    brain.text = "30,000 vertices follow 509 simulation nodes. The outer box is the bound, in time linear in the "
+                 "nodes; the inner one is the vertices' own. "
                  "Deeper levels have smaller boxes, and more axes make k-DOPs of them.";
     brain.levels = 7;
     brain.kdop = 26;

@@ -51,7 +51,8 @@ std::vector<References> parallelograms(std::span<const std::uint32_t> corners, s
                 continue;
             const std::uint32_t known = a < v ? a : b < v ? b : v ? v - 1 : 0;
             const auto tip = beyond.find(edge(a, b));
-            out[v] = tip != beyond.end() && a < v && b < v && tip->second < v ? References{a, b, tip->second} : References{known, known, known};
+            out[v] = tip != beyond.end() && a < v && b < v && tip->second < v ? References{a, b, tip->second}
+                                                                              : References{known, known, known};
             ++next;
         }
         for (std::size_t i = 0; i < 3; ++i)
@@ -60,7 +61,8 @@ std::vector<References> parallelograms(std::span<const std::uint32_t> corners, s
     return out;
 }
 
-nlohmann::ordered_json pack(std::span<const std::int32_t> values, std::size_t frames, std::size_t items, std::size_t components, std::span<const References> references)
+nlohmann::ordered_json pack(std::span<const std::int32_t> values, std::size_t frames, std::size_t items,
+                            std::size_t components, std::span<const References> references)
 {
     if (values.size() != frames * items * components || (!references.empty() && references.size() != items))
         throw std::invalid_argument("pack: shape and values differ");
@@ -72,11 +74,14 @@ nlohmann::ordered_json pack(std::span<const std::int32_t> values, std::size_t fr
             for (std::size_t c = 0; c < components; ++c) {
                 auto change = [&](std::size_t item) {
                     const std::size_t at = f * frame + item * components + c;
-                    return static_cast<std::uint32_t>(values[at]) - (f ? static_cast<std::uint32_t>(values[at - frame]) : 0u);
+                    return static_cast<std::uint32_t>(values[at]) -
+                           (f ? static_cast<std::uint32_t>(values[at - frame]) : 0u);
                 };
                 std::uint32_t d = change(i);
                 if (i > 0)
-                    d -= references.empty() ? change(i - 1) : change(references[i].a) + change(references[i].b) - change(references[i].c);
+                    d -= references.empty()
+                             ? change(i - 1)
+                             : change(references[i].a) + change(references[i].b) - change(references[i].c);
                 d = d << 1 ^ (d >> 31 ? ~0u : 0u);
                 error[f * frame + i * components + c] = d;
                 all |= d;

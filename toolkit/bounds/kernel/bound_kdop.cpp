@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compiled once per k-DOP and arithmetic, CINCH_AXES and CINCH_REAL, so that the compiler works on several at once (CMakeLists.txt).
+// Compiled once per k-DOP and arithmetic, CINCH_AXES and CINCH_REAL, so that the compiler works on several at once
+// (CMakeLists.txt).
 #include "toolkit/bounds/kernel/bound_kdop.hpp"
 
 #include "toolkit/deform/kernel/disabled_targets.hpp"
@@ -31,8 +32,8 @@ void bound_one(const KernelInput<T>& in, std::size_t i, KernelScratch<T>& scratc
         bound_by_blocks<T, kAxes>(in, bv, remembered, scratch, bound);
 }
 
-template <class T, std::size_t kAxes>
-void bound_range(const KernelInput<T>& in, std::size_t first, std::size_t last, KernelScratch<T>& scratch, double* supports)
+template <class T, std::size_t kAxes> void bound_range(const KernelInput<T>& in, std::size_t first, std::size_t last,
+                                                       KernelScratch<T>& scratch, double* supports)
 {
     for (std::size_t i = first; i < last; ++i, supports += 2 * kAxes) {
         const PackedBv<T>& bv = in.bvs[i];
@@ -74,8 +75,8 @@ template <class T> void prefetch(const KernelInput<T>& in, const PackedBv<T>& bv
         hwy::Prefetch(value + i);
 }
 
-template <class T, std::size_t kAxes>
-void bound_list(const KernelInput<T>& in, std::span<const std::uint32_t> list, KernelScratch<T>& scratch, std::size_t side, float* dops)
+template <class T, std::size_t kAxes> void bound_list(const KernelInput<T>& in, std::span<const std::uint32_t> list,
+                                                      KernelScratch<T>& scratch, std::size_t side, float* dops)
 {
     for (std::size_t n = 0; n < list.size(); ++n) {
         auto at = [&](std::uint32_t bv) { return in.place ? in.place[bv] : bv; };
@@ -98,12 +99,14 @@ void bound_list(const KernelInput<T>& in, std::span<const std::uint32_t> list, K
     }
 }
 
-void bound_all(const KernelInput<Real>& in, std::size_t first, std::size_t last, KernelScratch<Real>& scratch, double* supports)
+void bound_all(const KernelInput<Real>& in, std::size_t first, std::size_t last, KernelScratch<Real>& scratch,
+               double* supports)
 {
     bound_range<Real, CINCH_AXES>(in, first, last, scratch, supports);
 }
 
-void bound_listed(const KernelInput<Real>& in, std::span<const std::uint32_t> list, KernelScratch<Real>& scratch, std::size_t side, float* dops)
+void bound_listed(const KernelInput<Real>& in, std::span<const std::uint32_t> list, KernelScratch<Real>& scratch,
+                  std::size_t side, float* dops)
 {
     bound_list<Real, CINCH_AXES>(in, list, scratch, side, dops);
 }
@@ -119,13 +122,14 @@ using Real = CINCH_REAL;
 HWY_EXPORT(bound_all);
 HWY_EXPORT(bound_listed);
 
-template <> void bound_kdop<Real, CINCH_AXES>(const KernelInput<Real>& in, std::size_t first, std::size_t last, KernelScratch<Real>& scratch, double* supports)
+template <> void bound_kdop<Real, CINCH_AXES>(const KernelInput<Real>& in, std::size_t first, std::size_t last,
+                                              KernelScratch<Real>& scratch, double* supports)
 {
     HWY_DYNAMIC_DISPATCH(bound_all)(in, first, last, scratch, supports);
 }
 
-template <>
-void bound_kdop<Real, CINCH_AXES>(const KernelInput<Real>& in, std::span<const std::uint32_t> list, KernelScratch<Real>& scratch, std::size_t side, float* dops)
+template <> void bound_kdop<Real, CINCH_AXES>(const KernelInput<Real>& in, std::span<const std::uint32_t> list,
+                                              KernelScratch<Real>& scratch, std::size_t side, float* dops)
 {
     HWY_DYNAMIC_DISPATCH(bound_listed)(in, list, scratch, side, dops);
 }

@@ -6,10 +6,10 @@
 
 namespace cinch {
 
-template <class T, std::size_t kAxes>
-void bound_kdop(const KernelInput<T>& input, std::size_t first, std::size_t last, KernelScratch<T>& scratch, double* supports);
+template <class T, std::size_t kAxes> void bound_kdop(const KernelInput<T>& input, std::size_t first, std::size_t last,
+                                                      KernelScratch<T>& scratch, double* supports);
 
-template <class T, std::size_t kAxes>
-void bound_kdop(const KernelInput<T>& input, std::span<const std::uint32_t> list, KernelScratch<T>& scratch, std::size_t side, float* dops);
+template <class T, std::size_t kAxes> void bound_kdop(const KernelInput<T>& input, std::span<const std::uint32_t> list,
+                                                      KernelScratch<T>& scratch, std::size_t side, float* dops);
 
 } // namespace cinch

@@ -13,9 +13,11 @@
 HWY_BEFORE_NAMESPACE();
 namespace cinch::HWY_NAMESPACE {
 
-/// The kinds for many simulation nodes: λ where the kind says, D there, and every such value intersected with the greatest b.
-template <class T, std::size_t kAxes>
-void bound_by_blocks(const KernelInput<T>& in, const PackedBv<T>& bv, T* remembered, KernelScratch<T>& scratch, Bound<T, kAxes>& out)
+/// The kinds for many simulation nodes: λ where the kind says, D there, and every such value intersected with the
+/// greatest b.
+template <class T, std::size_t kAxes> void bound_by_blocks(const KernelInput<T>& in, const PackedBv<T>& bv,
+                                                           T* remembered, KernelScratch<T>& scratch,
+                                                           Bound<T, kAxes>& out)
 {
     const std::uint32_t* node = in.node.data() + bv.first_node;
     const T* block = in.value.data() + bv.first_value;

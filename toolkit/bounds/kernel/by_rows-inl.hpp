@@ -15,8 +15,8 @@ HWY_BEFORE_NAMESPACE();
 namespace cinch::HWY_NAMESPACE {
 
 /// The kinds for few.
-template <class T, std::size_t kAxes>
-void bound_by_rows(const KernelInput<T>& in, const PackedBv<T>& bv, T* remembered, KernelScratch<T>& scratch, Bound<T, kAxes>& out)
+template <class T, std::size_t kAxes> void bound_by_rows(const KernelInput<T>& in, const PackedBv<T>& bv, T* remembered,
+                                                         KernelScratch<T>& scratch, Bound<T, kAxes>& out)
 {
     constexpr std::size_t chunks = row_chunks<kAxes>;
     const std::uint32_t* node = in.node.data() + bv.first_node;
@@ -30,7 +30,8 @@ void bound_by_rows(const KernelInput<T>& in, const PackedBv<T>& bv, T* remembere
         if (scratch.b.size() < 16 * chunks * bv.count)
             scratch.b.resize(16 * chunks * bv.count);
         T* b = scratch.b.data();
-        mean_map<T, kAxes>(bv, *in.maps, node, value, PackedBv<T>::values(Method::support), support_mean, reference, out.error);
+        mean_map<T, kAxes>(bv, *in.maps, node, value, PackedBv<T>::values(Method::support), support_mean, reference,
+                           out.error);
         RowExtrema<T, kAxes> e;
         support_extrema<T, kAxes>(bv, *in.maps, node, value, reference, b, e);
         if (in.passes == 1 && !remembered) {
@@ -40,22 +41,24 @@ void bound_by_rows(const KernelInput<T>& in, const PackedBv<T>& bv, T* remembere
             to_array<T, kAxes>(e.greatest, own.greatest);
             to_array<T, kAxes>(e.mean, own.mean);
             begin<T, kAxes>(own, out);
-            search<T, kAxes>(in, bv, own, remembered, out, [&]<bool kMass>(const PerSide<T, kAxes>& at, Dual<T, kAxes>& d) {
-                SidesInRows<T, kAxes> lambda;
-                from_array<T, kAxes>(at, lambda);
-                RowDual<T, kAxes> parts;
-                support_dual<T, kAxes, kMass>(bv, value, b, lambda, parts);
-                to_array<T, kAxes>(parts.lower, d.lower);
-                to_array<T, kAxes>(parts.upper, d.upper);
-                if constexpr (kMass)
-                    to_array<T, kAxes>(parts.mass, d.mass);
-            });
+            search<T, kAxes>(in, bv, own, remembered, out,
+                             [&]<bool kMass>(const PerSide<T, kAxes>& at, Dual<T, kAxes>& d) {
+                                 SidesInRows<T, kAxes> lambda;
+                                 from_array<T, kAxes>(at, lambda);
+                                 RowDual<T, kAxes> parts;
+                                 support_dual<T, kAxes, kMass>(bv, value, b, lambda, parts);
+                                 to_array<T, kAxes>(parts.lower, d.lower);
+                                 to_array<T, kAxes>(parts.upper, d.upper);
+                                 if constexpr (kMass)
+                                     to_array<T, kAxes>(parts.mass, d.mass);
+                             });
             for (std::size_t s = 0; s < 2; ++s)
                 for (std::size_t c = 0; c < chunks; ++c)
                     bound.chunk[s][c] = Rows<T>::each_row(out.value[s] + 4 * c);
         }
         for (std::size_t c = 0; c < chunks; ++c)
-            add_rest_support(bv, point, reference.chunk[c], reference.chunk[c], in.rounding, bound.chunk[0][c], bound.chunk[1][c]);
+            add_rest_support(bv, point, reference.chunk[c], reference.chunk[c], in.rounding, bound.chunk[0][c],
+                             bound.chunk[1][c]);
     }
     store<T, kAxes>(bound, out.value);
     if (bv.guard) {

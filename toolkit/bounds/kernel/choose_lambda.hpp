@@ -8,8 +8,8 @@
 
 namespace cinch {
 
-/// D(λ) from its parts, or an upper bound of it: see dual_sum_factor(). `greatest` and `opposite` are the greatest b along and
-/// against the direction.
+/// D(λ) from its parts, or an upper bound of it: see dual_sum_factor(). `greatest` and `opposite` are the greatest b
+/// along and against the direction.
 template <class T> struct DualParts {
     T lower, upper, mass; ///< Σ l (b − λ), Σ r max(b − λ, 0), Σ r over b > λ
 };
@@ -21,13 +21,15 @@ template <class T> T proven_dual_value(T lambda, const DualParts<T>& d, T greate
     return succ(lambda + succ((d.lower + d.upper) + error));
 }
 
-/// Two tangents of the convex, piecewise linear D on either side of its minimum. Each step takes in the tangent at λ and moves to
-/// the crossing; every λ on the way is as valid as any.
+/// Two tangents of the convex, piecewise linear D on either side of its minimum. Each step takes in the tangent at λ
+/// and moves to the crossing; every λ on the way is as valid as any.
 template <class T> class TangentSearch {
 public:
     /// The tangents at λ = −∞ and +∞, written at the first λ: slopes 1 − Σ h and 1 − Σ l.
     TangentSearch(T lambda, const DualParts<T>& d, T sum_l, T sum_r, T mean)
-        : falling_{lambda, lambda + d.lower + sum_r * (mean - lambda), 1 - sum_l - sum_r}, rising_{lambda, lambda + d.lower, 1 - sum_l}
+        : falling_{lambda, lambda + d.lower + sum_r * (mean - lambda), 1 - sum_l - sum_r}, rising_{lambda,
+                                                                                                   lambda + d.lower,
+                                                                                                   1 - sum_l}
     {
     }
     /// λ again where the crossing is no number.
@@ -51,8 +53,9 @@ private:
     T least_ = 0;
 };
 
-/// The next frame's λ and step, λ having slope `slope` of D in this one. Steps go downhill, longer while the direction stays, shorter
-/// once it turns: no value of D is kept, which another frame may have changed. `first` is the step to begin with.
+/// The next frame's λ and step, λ having slope `slope` of D in this one. Steps go downhill, longer while the direction
+/// stays, shorter once it turns: no value of D is kept, which another frame may have changed. `first` is the step to
+/// begin with.
 template <class T> void remember(T lambda, T first, T slope, T* state)
 {
     const bool known = std::isfinite(state[0]) && std::isfinite(state[1]);

@@ -15,10 +15,11 @@ namespace cinch::HWY_NAMESPACE {
 /// Which boxes the extrema are over: the BV's, its oriented one, or each node's cut by its ball.
 enum class Boxes { common, oriented, local };
 
-/// b̂_j of every simulation node along and against the axes, into b: per block and axis 8 along, then 8 against it. kSecond asks for
-/// the two greatest, otherwise it is the greatest and the mean weighted by r.
+/// b̂_j of every simulation node along and against the axes, into b: per block and axis 8 along, then 8 against it.
+/// kSecond asks for the two greatest, otherwise it is the greatest and the mean weighted by r.
 template <class T, std::size_t kAxes, Boxes kBoxes, bool kSecond>
-void extrema(const PackedBv<T>& bv, const ProjectedMaps<T>& maps, const std::uint32_t* node, const T* block, T* b, Extrema<T, kAxes>& out, T& error)
+void extrema(const PackedBv<T>& bv, const ProjectedMaps<T>& maps, const std::uint32_t* node, const T* block, T* b,
+             Extrema<T, kAxes>& out, T& error)
 {
     constexpr bool kCommon = kBoxes != Boxes::local;
     constexpr std::size_t rows = PackedBv<T>::rows(kCommon ? Method::limited : Method::local);
@@ -31,7 +32,8 @@ void extrema(const PackedBv<T>& bv, const ProjectedMaps<T>& maps, const std::uin
     for (std::size_t n = 0; n < block_lanes; ++n)
         repeats[n] = n < (bv.count - 1) % block_lanes + 1 ? T(0) : -infinity_of<T>;
     const auto repeated = Lanes<T>::load(repeats);
-    const std::size_t passed_over = blocks_of(bv.count) < 16 ? 0 : 3; // of every 4 blocks, by the mean, which need not be exact
+    const std::size_t passed_over =
+        blocks_of(bv.count) < 16 ? 0 : 3; // of every 4 blocks, by the mean, which need not be exact
     Lanes<T> ranges = Lanes<T>::all(0);
     for (std::size_t i = 0; i < blocks_of(bv.count); ++i, node += block_lanes, block += rows * block_lanes) {
         auto row = [&](std::size_t n) CINCH_FLATTEN { return Lanes<T>::load(block + n * block_lanes); };
@@ -47,7 +49,8 @@ void extrema(const PackedBv<T>& bv, const ProjectedMaps<T>& maps, const std::uin
             auto w = fma(magnitude(q[0]), e[0], fma(magnitude(q[1]), e[1], magnitude(q[2]) * e[2]));
             if constexpr (kBoxes == Boxes::oriented) {
                 auto along = [&](const T(&axis)[3]) CINCH_FLATTEN {
-                    return magnitude(fma(q[0], Lanes<T>::all(axis[0]), fma(q[1], Lanes<T>::all(axis[1]), q[2] * Lanes<T>::all(axis[2]))));
+                    return magnitude(fma(q[0], Lanes<T>::all(axis[0]),
+                                         fma(q[1], Lanes<T>::all(axis[1]), q[2] * Lanes<T>::all(axis[2]))));
                 };
                 w = (along(bv.axis[0]) + along(bv.axis[1])) + along(bv.axis[2]);
             }
@@ -118,7 +121,8 @@ void extrema(const PackedBv<T>& bv, const ProjectedMaps<T>& maps, const std::uin
 
 /// D(λ) in parts, with kMass Σ r over b > λ too.
 template <class T, std::size_t kAxes, bool kMass, bool kLower>
-void dual(const PackedBv<T>& bv, const T* block, std::size_t rows, const T* b, const PerSide<T, kAxes>& lambda, Dual<T, kAxes>& out)
+void dual(const PackedBv<T>& bv, const T* block, std::size_t rows, const T* b, const PerSide<T, kAxes>& lambda,
+          Dual<T, kAxes>& out)
 {
     Lanes<T> lower[2][kAxes], upper[2][kAxes], mass[2][kAxes];
     for (std::size_t s = 0; s < 2; ++s)
@@ -147,8 +151,9 @@ void dual(const PackedBv<T>& bv, const T* block, std::size_t rows, const T* b, c
         sum(mass, out.mass);
 }
 
-template <class T, std::size_t kAxes, bool kMass>
-void dual(const PackedBv<T>& bv, const T* block, std::size_t rows, const T* b, const PerSide<T, kAxes>& lambda, Dual<T, kAxes>& out)
+template <class T, std::size_t kAxes, bool kMass> void dual(const PackedBv<T>& bv, const T* block, std::size_t rows,
+                                                            const T* b, const PerSide<T, kAxes>& lambda,
+                                                            Dual<T, kAxes>& out)
 {
     if (bv.sum_l > 0)
         dual<T, kAxes, kMass, true>(bv, block, rows, b, lambda, out);

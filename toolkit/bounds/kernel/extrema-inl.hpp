@@ -20,10 +20,12 @@ namespace cinch::HWY_NAMESPACE {
 
 template <class T> inline constexpr T infinity_of = std::numeric_limits<T>::infinity();
 
-/// Values along every axis, then those against it, with room behind each side for lanes and rows to take and store. Lanes compute there too,
-/// so what is filled value by value repeats its last one: numbers, and no subnormal ones, which are slow.
+/// Values along every axis, then those against it, with room behind each side for lanes and rows to take and store.
+/// Lanes compute there too, so what is filled value by value repeats its last one: numbers, and no subnormal ones,
+/// which are slow.
 template <class T, std::size_t kAxes> struct PerSide {
-    static constexpr std::size_t room = kAxes <= block_lanes / 2 ? block_lanes / 2 : (kAxes + block_lanes - 1) / block_lanes * block_lanes;
+    static constexpr std::size_t room =
+        kAxes <= block_lanes / 2 ? block_lanes / 2 : (kAxes + block_lanes - 1) / block_lanes * block_lanes;
     alignas(64) T value[2 * room + 12];
 
     T* operator[](std::size_t side) { return value + side * room; }

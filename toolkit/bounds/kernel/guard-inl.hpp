@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // No #pragma once: compiled anew for every target.
-// Keeps a bound from exceeding Eq. 12 by more than 1 % of its width, without computing Eq. 12 where that is certain. Eq. 12 is D of the
-// extrema b_j of the BV's own box, so at least Σ w_j b_j for every w in W′, and what a *floor* is: any lower bound on it. A bound no
-// further above its floors than a share of their distance is not clearly looser than Eq. 12; others are intersected with it.
-// Floors carry rounding errors of at most 24u N (rounding.hpp), as Eq. 12 does below its real value, and the errors of the nodes, of 48u N
-// or more, which Eq. 12 has on top, make up for both.
+// Keeps a bound from exceeding Eq. 12 by more than 1 % of its width, without computing Eq. 12 where that is certain.
+// Eq. 12 is D of the extrema b_j of the BV's own box, so at least Σ w_j b_j for every w in W′, and what a *floor* is:
+// any lower bound on it. A bound no further above its floors than a share of their distance is not clearly looser than
+// Eq. 12; others are intersected with it. Floors carry rounding errors of at most 24u N (rounding.hpp), as Eq. 12 does
+// below its real value, and the errors of the nodes, of 48u N or more, which Eq. 12 has on top, make up for both.
 #if defined(CINCH_GUARD_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef CINCH_GUARD_INL
 #undef CINCH_GUARD_INL
@@ -24,7 +24,10 @@ inline constexpr double clearly_looser = 0.005;
 template <class T> struct BoxReach {
     Rows<T> centre, half;
 
-    HWY_INLINE explicit BoxReach(const PackedBv<T>& bv) : centre(Rows<T>::each_row(bv.centre)), half(Rows<T>::each_row(bv.half)) {}
+    HWY_INLINE explicit BoxReach(const PackedBv<T>& bv)
+        : centre(Rows<T>::each_row(bv.centre)), half(Rows<T>::each_row(bv.half))
+    {
+    }
     HWY_INLINE Rows<T> operator()(const Rows<T>& map) const
     {
         const auto position = map * centre, radius = magnitude(map) * half;
@@ -33,7 +36,8 @@ template <class T> struct BoxReach {
 };
 
 /// The mean map's reach: w = the means, |q̄| ≤ Σ m|q|.
-template <class T, std::size_t kAxes> HWY_INLINE void floor_of_mean(const PackedBv<T>& bv, const AxisMap<T, kAxes>& mean, Sides<T, kAxes>& floor)
+template <class T, std::size_t kAxes>
+HWY_INLINE void floor_of_mean(const PackedBv<T>& bv, const AxisMap<T, kAxes>& mean, Sides<T, kAxes>& floor)
 {
     const BoxReach<T> over_box(bv);
     for (std::size_t c = 0; c < row_chunks<kAxes>; ++c) {
@@ -43,8 +47,10 @@ template <class T, std::size_t kAxes> HWY_INLINE void floor_of_mean(const Packed
     }
 }
 
-/// The second-greatest extremum over the BV's box among its probes: Eq. 12 is at least that of all nodes where every l is 0.
-template <class T, std::size_t kAxes> HWY_INLINE void floor_of_probes(const PackedBv<T>& bv, const ProjectedMaps<T>& maps, const std::uint32_t* node, Sides<T, kAxes>& floor)
+/// The second-greatest extremum over the BV's box among its probes: Eq. 12 is at least that of all nodes where every l
+/// is 0.
+template <class T, std::size_t kAxes> HWY_INLINE void
+floor_of_probes(const PackedBv<T>& bv, const ProjectedMaps<T>& maps, const std::uint32_t* node, Sides<T, kAxes>& floor)
 {
     const std::uint32_t* const probe = node + blocks_of(bv.count) * block_lanes;
     const BoxReach<T> over_box(bv);
@@ -60,7 +66,8 @@ template <class T, std::size_t kAxes> HWY_INLINE void floor_of_probes(const Pack
     }
 }
 
-/// Whether a bound, the errors of its nodes included, lies close enough above its floors; false where one of them is no number.
+/// Whether a bound, the errors of its nodes included, lies close enough above its floors; false where one of them is no
+/// number.
 template <class T> bool close_to(double bound, T floor, T opposite_floor)
 {
     const double low = static_cast<double>(floor), width = low + static_cast<double>(opposite_floor);

@@ -26,7 +26,8 @@ HWY_BEFORE_NAMESPACE();
 namespace cinch::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// 8 virtual lanes of T, as however many vectors the target needs. What is done to them is the same, lane by lane, everywhere.
+/// 8 virtual lanes of T, as however many vectors the target needs. What is done to them is the same, lane by lane,
+/// everywhere.
 template <class T> struct Lanes {
     using D = hn::CappedTag<T, 32 / sizeof(T)>; // 256 bits at most
     using V = hn::Vec<D>;
@@ -80,18 +81,40 @@ template <class T, class F> HWY_INLINE Lanes<T> each(const Lanes<T>& a, const La
         x.v[i] = f(a.v[i], b.v[i]);
     return x;
 }
-template <class T> HWY_INLINE Lanes<T> operator+(const Lanes<T>& a, const Lanes<T>& b) { return each(a, b, [](auto x, auto y) { return hn::Add(x, y); }); }
-template <class T> HWY_INLINE Lanes<T> operator-(const Lanes<T>& a, const Lanes<T>& b) { return each(a, b, [](auto x, auto y) { return hn::Sub(x, y); }); }
-template <class T> HWY_INLINE Lanes<T> operator*(const Lanes<T>& a, const Lanes<T>& b) { return each(a, b, [](auto x, auto y) { return hn::Mul(x, y); }); }
-template <class T> HWY_INLINE Lanes<T> operator/(const Lanes<T>& a, const Lanes<T>& b) { return each(a, b, [](auto x, auto y) { return hn::Div(x, y); }); }
-template <class T> HWY_INLINE Lanes<T> magnitude(const Lanes<T>& a) { return each(a, [](auto x) { return hn::Abs(x); }); }
+template <class T> HWY_INLINE Lanes<T> operator+(const Lanes<T>& a, const Lanes<T>& b)
+{
+    return each(a, b, [](auto x, auto y) { return hn::Add(x, y); });
+}
+template <class T> HWY_INLINE Lanes<T> operator-(const Lanes<T>& a, const Lanes<T>& b)
+{
+    return each(a, b, [](auto x, auto y) { return hn::Sub(x, y); });
+}
+template <class T> HWY_INLINE Lanes<T> operator*(const Lanes<T>& a, const Lanes<T>& b)
+{
+    return each(a, b, [](auto x, auto y) { return hn::Mul(x, y); });
+}
+template <class T> HWY_INLINE Lanes<T> operator/(const Lanes<T>& a, const Lanes<T>& b)
+{
+    return each(a, b, [](auto x, auto y) { return hn::Div(x, y); });
+}
+template <class T> HWY_INLINE Lanes<T> magnitude(const Lanes<T>& a)
+{
+    return each(a, [](auto x) { return hn::Abs(x); });
+}
 /// Of numbers; NaN occurs only where the node's error is infinite, which decides the result.
-template <class T> HWY_INLINE Lanes<T> greater(const Lanes<T>& a, const Lanes<T>& b) { return each(a, b, [](auto x, auto y) { return hn::Max(x, y); }); }
-template <class T> HWY_INLINE Lanes<T> less(const Lanes<T>& a, const Lanes<T>& b) { return each(a, b, [](auto x, auto y) { return hn::Min(x, y); }); }
+template <class T> HWY_INLINE Lanes<T> greater(const Lanes<T>& a, const Lanes<T>& b)
+{
+    return each(a, b, [](auto x, auto y) { return hn::Max(x, y); });
+}
+template <class T> HWY_INLINE Lanes<T> less(const Lanes<T>& a, const Lanes<T>& b)
+{
+    return each(a, b, [](auto x, auto y) { return hn::Min(x, y); });
+}
 /// x where a > 0, else 0.
 template <class T> HWY_INLINE Lanes<T> where_positive(const Lanes<T>& a, const Lanes<T>& x)
 {
-    return each(a, x, [](auto p, auto y) { return hn::IfThenElseZero(hn::Gt(p, hn::Zero(typename Lanes<T>::D())), y); });
+    return each(a, x,
+                [](auto p, auto y) { return hn::IfThenElseZero(hn::Gt(p, hn::Zero(typename Lanes<T>::D())), y); });
 }
 
 /// a·b + c, rounded once: part of the definition of every result.
@@ -133,7 +156,8 @@ template <class T> HWY_INLINE bool at_most(const Lanes<T>& x, const Lanes<T>& y)
     return all;
 }
 
-/// Halves upon each other until one value is left: lanes (0, 4), (1, 5), (2, 6), (3, 7), then (0, 2), (1, 3), then the last two.
+/// Halves upon each other until one value is left: lanes (0, 4), (1, 5), (2, 6), (3, 7), then (0, 2), (1, 3), then the
+/// last two.
 template <class T, class F> HWY_INLINE T fold(const Lanes<T>& a, F&& f)
 {
     typename Lanes<T>::V v[Lanes<T>::vectors];
@@ -154,12 +178,14 @@ template <class T, class F> HWY_INLINE Lanes<T> fold(const Lanes<T> (&x)[block_l
     if constexpr (sizeof(T) == 4 && Lanes<T>::width == 8) {
         const hn::Repartition<double, D> pairs;
         auto halves = [&](std::size_t a, std::size_t b) CINCH_FLATTEN {
-            const auto v = f(hn::ConcatLowerLower(d, x[b].v[0], x[a].v[0]), hn::ConcatUpperUpper(d, x[b].v[0], x[a].v[0]));
+            const auto v =
+                f(hn::ConcatLowerLower(d, x[b].v[0], x[a].v[0]), hn::ConcatUpperUpper(d, x[b].v[0], x[a].v[0]));
             return hn::BitCast(pairs, v);
         };
         auto quarters = [&](std::size_t a, std::size_t b) CINCH_FLATTEN { // of x[a], x[b], x[a + 4], x[b + 4]
             const auto one = halves(a, a + 4), two = halves(b, b + 4);
-            const auto v = f(hn::BitCast(d, hn::InterleaveLower(pairs, one, two)), hn::BitCast(d, hn::InterleaveUpper(pairs, one, two)));
+            const auto v = f(hn::BitCast(d, hn::InterleaveLower(pairs, one, two)),
+                             hn::BitCast(d, hn::InterleaveUpper(pairs, one, two)));
             return f(v, hn::Shuffle2301(v));
         };
         out.v[0] = hn::OddEven(quarters(1, 3), quarters(0, 2));
@@ -181,11 +207,20 @@ template <class T, class F> HWY_INLINE Lanes<T> fold(const Lanes<T> (&x)[block_l
     return Lanes<T>::load(value);
 }
 /// ((0 + 4) + (2 + 6)) + ((1 + 5) + (3 + 7)).
-template <class T> HWY_INLINE T sum(const Lanes<T>& a) { return fold(a, [](auto x, auto y) { return hn::Add(x, y); }); }
-template <class T> HWY_INLINE T greatest(const Lanes<T>& a) { return fold(a, [](auto x, auto y) { return hn::Max(x, y); }); }
+template <class T> HWY_INLINE T sum(const Lanes<T>& a)
+{
+    return fold(a, [](auto x, auto y) { return hn::Add(x, y); });
+}
+template <class T> HWY_INLINE T greatest(const Lanes<T>& a)
+{
+    return fold(a, [](auto x, auto y) { return hn::Max(x, y); });
+}
 
 /// Lanes i to i + 7 of both sides, i < 2·room.
-template <class T, std::size_t kAxes> HWY_INLINE Lanes<T> lanes_of(const PerSide<T, kAxes>& x, std::size_t i) { return Lanes<T>::load(x.value + i); }
+template <class T, std::size_t kAxes> HWY_INLINE Lanes<T> lanes_of(const PerSide<T, kAxes>& x, std::size_t i)
+{
+    return Lanes<T>::load(x.value + i);
+}
 /// The same lanes of the other side.
 template <class T, std::size_t kAxes> HWY_INLINE Lanes<T> opposite_lanes(const PerSide<T, kAxes>& x, std::size_t i)
 {
@@ -207,7 +242,8 @@ template <class T, std::size_t kAxes> HWY_INLINE Lanes<T> opposite_lanes(const P
     }
 }
 /// fold() of every side and axis.
-template <class T, std::size_t kAxes, class F> HWY_INLINE void fold(const Lanes<T> (&x)[2][kAxes], PerSide<T, kAxes>& out, F&& f)
+template <class T, std::size_t kAxes, class F>
+HWY_INLINE void fold(const Lanes<T> (&x)[2][kAxes], PerSide<T, kAxes>& out, F&& f)
 {
     constexpr std::size_t room = PerSide<T, kAxes>::room;
     for (std::size_t i = 0; i < 2 * room; i += block_lanes) {
@@ -243,8 +279,10 @@ template <class T> HWY_INLINE void transpose(const T* const (&record)[block_lane
         hn::Vec<D> v[4];
         for (std::size_t i = 0; i < 4; ++i)
             v[i] = hn::Combine(d, hn::LoadU(half, record[i + 4] + offset), hn::LoadU(half, record[i] + offset));
-        const auto a = hn::BitCast(pairs, hn::InterleaveLower(d, v[0], v[1])), b = hn::BitCast(pairs, hn::InterleaveLower(d, v[2], v[3]));
-        const auto e = hn::BitCast(pairs, hn::InterleaveUpper(d, v[0], v[1])), f = hn::BitCast(pairs, hn::InterleaveUpper(d, v[2], v[3]));
+        const auto a = hn::BitCast(pairs, hn::InterleaveLower(d, v[0], v[1])),
+                   b = hn::BitCast(pairs, hn::InterleaveLower(d, v[2], v[3]));
+        const auto e = hn::BitCast(pairs, hn::InterleaveUpper(d, v[0], v[1])),
+                   f = hn::BitCast(pairs, hn::InterleaveUpper(d, v[2], v[3]));
         row[0].v[0] = hn::BitCast(d, hn::InterleaveLower(pairs, a, b));
         row[1].v[0] = hn::BitCast(d, hn::InterleaveUpper(pairs, a, b));
         row[2].v[0] = hn::BitCast(d, hn::InterleaveLower(pairs, e, f));
@@ -274,7 +312,8 @@ template <class T> HWY_INLINE void transpose(const T* const (&record)[block_lane
     }
 }
 
-/// The projected maps of 8 simulation nodes: rows() gives places offset … offset + 3 of their records, errors() the last ones.
+/// The projected maps of 8 simulation nodes: rows() gives places offset … offset + 3 of their records, errors() the
+/// last ones.
 template <class T, std::size_t kAxes> struct ScatteredMaps {
     const T* record[block_lanes];
     HWY_INLINE void rows(std::size_t offset, Lanes<T>* row) const { transpose(record, offset, row); }
@@ -296,10 +335,13 @@ template <class T, std::size_t kAxes> struct OctetOfMaps {
             row[s] = Lanes<T>::load(first + (offset + s) * block_lanes);
     }
 };
-template <std::size_t kAxes, class T, class F> HWY_INLINE void with_maps(const ProjectedMaps<T>& maps, const std::uint32_t* node, F&& f)
+template <std::size_t kAxes, class T, class F>
+HWY_INLINE void with_maps(const ProjectedMaps<T>& maps, const std::uint32_t* node, F&& f)
 {
-    // Eight different nodes (a repeated one would be the last two) in ascending order, so a difference of 7 leaves no gaps.
-    if (!maps.octet.empty() && node[0] % block_lanes == 0 && node[block_lanes - 1] - node[0] == block_lanes - 1 && node[block_lanes - 2] != node[block_lanes - 1])
+    // Eight different nodes (a repeated one would be the last two) in ascending order, so a difference of 7 leaves no
+    // gaps.
+    if (!maps.octet.empty() && node[0] % block_lanes == 0 && node[block_lanes - 1] - node[0] == block_lanes - 1 &&
+        node[block_lanes - 2] != node[block_lanes - 1])
         return f(OctetOfMaps<T, kAxes>{maps.octet.data() + node[0] * (4 * projected_rows(kAxes))});
     ScatteredMaps<T, kAxes> scattered;
     for (std::size_t i = 0; i < block_lanes; ++i)

@@ -12,13 +12,14 @@
 HWY_BEFORE_NAMESPACE();
 namespace cinch::HWY_NAMESPACE {
 
-/// The bound of an affine model of the weights. With w_j = m_j + g_j·y + ρ_j, y = x − z, z the pivot, and the mean map q̄, θ̄:
+/// The bound of an affine model of the weights. With w_j = m_j + g_j·y + ρ_j, y = x − z, z the pivot, and the mean map
+/// q̄, θ̄:
 ///   γ·v = q̄·x + θ̄ + Σ_j (w_j − m_j)((q_j − q̄)·x + θ_j − θ̄)
 ///       = q̄·z + θ̄ + (q̄ + Σ_j P_j g_j)·y + Σ_j ρ_j P_j + Σ_j (w_j − m_j)(q_j − q̄)·y,   P_j = (q_j − q̄)·z + θ_j − θ̄,
 /// so rest support of q̄ + Σ P_j g_j, then |ρ_j| ≤ residual_j and |(w_j − m_j) y| ≤ moment_j.
 template <class T, std::size_t kAxes>
-void linear(const PackedBv<T>& bv, const ProjectedMaps<T>& maps, const std::uint32_t* node, const T* point, const T* value, Rounding rounding, AxisMap<T, kAxes>& mean,
-            Sides<T, kAxes>& bound, T& error)
+void linear(const PackedBv<T>& bv, const ProjectedMaps<T>& maps, const std::uint32_t* node, const T* point,
+            const T* value, Rounding rounding, AxisMap<T, kAxes>& mean, Sides<T, kAxes>& bound, T& error)
 {
     constexpr std::size_t stride = PackedBv<T>::values(Method::linear); // gradient (3), residual, moment (3), mean
     mean_map<T, kAxes>(bv, maps, node, value, stride, 7, mean, error);

@@ -24,13 +24,15 @@ void finish(const KernelInput<T>& in, const PackedBv<T>& bv, const Bound<T, kAxe
     const double wider = widening<T, kAxes>(in, bv, bound);
     for (std::size_t s = 0; s < 2; ++s)
         for (std::size_t a = 0; a < kAxes; ++a) {
-            const double sum = static_cast<double>(bound.value[s][a]) + wider, support = in.rounding == Rounding::proven ? succ(sum) : sum;
+            const double sum = static_cast<double>(bound.value[s][a]) + wider,
+                         support = in.rounding == Rounding::proven ? succ(sum) : sum;
             own[s][a] = support < infinite ? support : infinite;
         }
 }
 
 /// And in the world.
-template <class T, std::size_t kAxes> void to_world(const KernelInput<T>& in, const double (&own)[2][kAxes], double* supports)
+template <class T, std::size_t kAxes>
+void to_world(const KernelInput<T>& in, const double (&own)[2][kAxes], double* supports)
 {
     const bool proven = in.rounding == Rounding::proven;
     const Vec3& origin = in.maps->origin;

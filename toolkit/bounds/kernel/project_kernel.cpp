@@ -19,16 +19,25 @@
 HWY_BEFORE_NAMESPACE();
 namespace cinch::HWY_NAMESPACE {
 
-HWY_INLINE Quad absolute(const Quad& a) { return each(a, a, [](auto x, auto) { return hn::Abs(x); }); }
-HWY_INLINE Quad greater(const Quad& a, const Quad& b) { return each(a, b, [](auto x, auto y) { return hn::Max(x, y); }); }
-HWY_INLINE Quad square_root(const Quad& a) { return each(a, a, [](auto x, auto) { return hn::Sqrt(x); }); }
+HWY_INLINE Quad absolute(const Quad& a)
+{
+    return each(a, a, [](auto x, auto) { return hn::Abs(x); });
+}
+HWY_INLINE Quad greater(const Quad& a, const Quad& b)
+{
+    return each(a, b, [](auto x, auto y) { return hn::Max(x, y); });
+}
+HWY_INLINE Quad square_root(const Quad& a)
+{
+    return each(a, a, [](auto x, auto) { return hn::Sqrt(x); });
+}
 HWY_INLINE Quad next(const Quad& x) // succ of rounding.hpp
 {
     return x + (times(absolute(x), unit_roundoff * (1 + 2 * unit_roundoff)) + Quad::all(smallest_subnormal));
 }
 
-// A row of A, and d = A·o + t − O. The compensated sum [Ogita, Rump, Oishi 2005, Dot2] is within u|d| + 2^-98·(Σ|A o| + |t| + |O|); for
-// o = 0 so is fl(t − O), without the second term.
+// A row of A, and d = A·o + t − O. The compensated sum [Ogita, Rump, Oishi 2005, Dot2] is within u|d| + 2^-98·(Σ|A o| +
+// |t| + |O|); for o = 0 so is fl(t − O), without the second term.
 struct Row {
     Quad a[3], t, d, lost;
 };
@@ -63,7 +72,8 @@ template <class T> HWY_INLINE void store_as(const Quad& x, T* p)
         if constexpr (sizeof(T) == 8)
             hn::StoreU(x.v[i], Quad::D(), p + i * Quad::width);
         else
-            hn::StoreU(hn::DemoteTo(hn::Rebind<float, Quad::D>(), x.v[i]), hn::Rebind<float, Quad::D>(), p + i * Quad::width);
+            hn::StoreU(hn::DemoteTo(hn::Rebind<float, Quad::D>(), x.v[i]), hn::Rebind<float, Quad::D>(),
+                       p + i * Quad::width);
     }
 }
 template <class T> HWY_INLINE void store_up(const Quad& x, T* p)
@@ -75,7 +85,9 @@ template <class T> HWY_INLINE void store_up(const Quad& x, T* p)
         for (std::size_t i = 0; i < Quad::vectors; ++i) { // fl(x) ≥ x(1 − u), and succ goes past x
             const auto f = hn::DemoteTo(d, x.v[i]);
             constexpr float phi = unit_roundoff_of<float> * (1 + 2 * unit_roundoff_of<float>);
-            hn::StoreU(hn::Add(f, hn::Add(hn::Mul(hn::Abs(f), hn::Set(d, phi)), hn::Set(d, smallest_subnormal_of<float>))), d, p + i * Quad::width);
+            hn::StoreU(
+                hn::Add(f, hn::Add(hn::Mul(hn::Abs(f), hn::Set(d, phi)), hn::Set(d, smallest_subnormal_of<float>))), d,
+                p + i * Quad::width);
         }
     }
 }
@@ -92,17 +104,20 @@ template <class T> HWY_INLINE Quad norm(const Quad& x, const Quad& y, const Quad
         out.v[i] = hn::IfThenElse(safe, root.v[i], sum.v[i]);
     }
     // 3 products, 2 sums and a root: 4 roundings and half of one; then each number by u in T, or by underflow.
-    return times(out, 1 + 8 * unit_roundoff + 2 * static_cast<double>(unit_roundoff_of<T>)) + Quad::all(4 * static_cast<double>(smallest_subnormal_of<T>));
+    return times(out, 1 + 8 * unit_roundoff + 2 * static_cast<double>(unit_roundoff_of<T>)) +
+           Quad::all(4 * static_cast<double>(smallest_subnormal_of<T>));
 }
 
-template <class T>
-ProjectionReport project(std::span<const AffineMap> maps, const RestExtent& rest, std::span<const Axis> axes, bool proven, const Vec3& origin, T* records)
+template <class T> ProjectionReport project(std::span<const AffineMap> maps, const RestExtent& rest,
+                                            std::span<const Axis> axes, bool proven, const Vec3& origin, T* records)
 {
     const std::size_t record = 4 * projected_rows(axes.size());
     const double extent = rest.about_origin.sum();
-    const double limit = rest.about_origin.maxCoeff() <= magnitude_limit<T> ? magnitude_limit<T> : -1; // rest data may overflow T
+    const double limit =
+        rest.about_origin.maxCoeff() <= magnitude_limit<T> ? magnitude_limit<T> : -1; // rest data may overflow T
     const Quad node_underflow = Quad::all(128 * static_cast<double>(smallest_subnormal_of<T>) * (1 + extent));
-    const double node_rounding = kernel_error_constant * static_cast<double>(unit_roundoff_of<T>), evaluation = (rest.influences + 8) * unit_roundoff;
+    const double node_rounding = kernel_error_constant * static_cast<double>(unit_roundoff_of<T>),
+                 evaluation = (rest.influences + 8) * unit_roundoff;
     const Quad evaluation_underflow = Quad::all(8 * rest.influences * smallest_subnormal);
     Quad greatest_vertex_error = Quad::zero();
     ProjectionReport report;
@@ -116,7 +131,8 @@ ProjectionReport project(std::span<const AffineMap> maps, const RestExtent& rest
         }
         Row row[3];
         for (std::size_t r = 0; r < 3; ++r) {
-            Quad columns[4] = {Quad::load_unaligned(own[0]->m[r]), Quad::load_unaligned(own[1]->m[r]), Quad::load_unaligned(own[2]->m[r]), Quad::load_unaligned(own[3]->m[r])};
+            Quad columns[4] = {Quad::load_unaligned(own[0]->m[r]), Quad::load_unaligned(own[1]->m[r]),
+                               Quad::load_unaligned(own[2]->m[r]), Quad::load_unaligned(own[3]->m[r])};
             transpose(columns);
             for (std::size_t s = 0; s < 3; ++s)
                 row[r].a[s] = columns[s];
@@ -150,7 +166,8 @@ ProjectionReport project(std::span<const AffineMap> maps, const RestExtent& rest
             store_up<T>(norm<T>(along[0], along[1], along[2]), length);
             const Quad computed = next(times(world, evaluation) + evaluation_underflow); // evaluation_error
             const Quad lost_4 = times(lost, 4);
-            error = greater(next((times(about, node_rounding) + node_underflow) + lost_4) + computed, error); // node_error + evaluation_error
+            error = greater(next((times(about, node_rounding) + node_underflow) + lost_4) + computed,
+                            error); // node_error + evaluation_error
             vertex_error = greater(next(lost_4 + computed), vertex_error);
             transpose(along);
             for (std::size_t i = 0; i < 4; ++i) {
@@ -192,11 +209,13 @@ ProjectionReport project(std::span<const AffineMap> maps, const RestExtent& rest
     return report;
 }
 
-ProjectionReport project_float(std::span<const AffineMap> maps, const RestExtent& rest, std::span<const Axis> axes, bool proven, const Vec3& origin, float* records)
+ProjectionReport project_float(std::span<const AffineMap> maps, const RestExtent& rest, std::span<const Axis> axes,
+                               bool proven, const Vec3& origin, float* records)
 {
     return project(maps, rest, axes, proven, origin, records);
 }
-ProjectionReport project_double(std::span<const AffineMap> maps, const RestExtent& rest, std::span<const Axis> axes, bool proven, const Vec3& origin, double* records)
+ProjectionReport project_double(std::span<const AffineMap> maps, const RestExtent& rest, std::span<const Axis> axes,
+                                bool proven, const Vec3& origin, double* records)
 {
     return project(maps, rest, axes, proven, origin, records);
 }
@@ -209,13 +228,13 @@ namespace cinch {
 HWY_EXPORT(project_float);
 HWY_EXPORT(project_double);
 
-template <>
-ProjectionReport project_nodes(std::span<const AffineMap> maps, const RestExtent& rest, std::span<const Axis> axes, bool proven, const Vec3& origin, float* records)
+template <> ProjectionReport project_nodes(std::span<const AffineMap> maps, const RestExtent& rest,
+                                           std::span<const Axis> axes, bool proven, const Vec3& origin, float* records)
 {
     return HWY_DYNAMIC_DISPATCH(project_float)(maps, rest, axes, proven, origin, records);
 }
-template <>
-ProjectionReport project_nodes(std::span<const AffineMap> maps, const RestExtent& rest, std::span<const Axis> axes, bool proven, const Vec3& origin, double* records)
+template <> ProjectionReport project_nodes(std::span<const AffineMap> maps, const RestExtent& rest,
+                                           std::span<const Axis> axes, bool proven, const Vec3& origin, double* records)
 {
     return HWY_DYNAMIC_DISPATCH(project_double)(maps, rest, axes, proven, origin, records);
 }

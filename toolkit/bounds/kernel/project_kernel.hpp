@@ -14,8 +14,10 @@ struct ProjectionReport {
     double vertex_error = 0;
 };
 
-/// Writes the records of ProjectedMaps, relative to `origin`. The same bits on every target: four simulation nodes at a time, in double.
-template <class T>
-ProjectionReport project_nodes(std::span<const AffineMap> maps, const RestExtent& rest, std::span<const Axis> axes, bool proven, const Vec3& origin, T* records);
+/// Writes the records of ProjectedMaps, relative to `origin`. The same bits on every target: four simulation nodes at a
+/// time, in double.
+template <class T> ProjectionReport project_nodes(std::span<const AffineMap> maps, const RestExtent& rest,
+                                                  std::span<const Axis> axes, bool proven, const Vec3& origin,
+                                                  T* records);
 
 } // namespace cinch

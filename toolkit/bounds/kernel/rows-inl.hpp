@@ -21,8 +21,9 @@ HWY_BEFORE_NAMESPACE();
 namespace cinch::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// 4 rows of 4 values of T, as however many vectors the target needs: of a projected map the rows q₀ q₁ q₂ θ of four axes. For BVs of few
-/// simulation nodes, which it takes as they stand. What is done is the same, lane by lane, everywhere.
+/// 4 rows of 4 values of T, as however many vectors the target needs: of a projected map the rows q₀ q₁ q₂ θ of four
+/// axes. For BVs of few simulation nodes, which it takes as they stand. What is done is the same, lane by lane,
+/// everywhere.
 template <class T> struct Rows {
     using D = hn::CappedTag<T, sizeof(T) == 4 ? 16 : 4>;
     using V = hn::Vec<D>;
@@ -99,12 +100,27 @@ template <class T, class F> HWY_INLINE Rows<T> each(const Rows<T>& a, const Rows
         x.v[i] = f(a.v[i], b.v[i]);
     return x;
 }
-template <class T> HWY_INLINE Rows<T> operator+(const Rows<T>& a, const Rows<T>& b) { return each(a, b, [](auto x, auto y) { return hn::Add(x, y); }); }
-template <class T> HWY_INLINE Rows<T> operator-(const Rows<T>& a, const Rows<T>& b) { return each(a, b, [](auto x, auto y) { return hn::Sub(x, y); }); }
-template <class T> HWY_INLINE Rows<T> operator*(const Rows<T>& a, const Rows<T>& b) { return each(a, b, [](auto x, auto y) { return hn::Mul(x, y); }); }
-template <class T> HWY_INLINE Rows<T> magnitude(const Rows<T>& a) { return each(a, [](auto x) { return hn::Abs(x); }); }
+template <class T> HWY_INLINE Rows<T> operator+(const Rows<T>& a, const Rows<T>& b)
+{
+    return each(a, b, [](auto x, auto y) { return hn::Add(x, y); });
+}
+template <class T> HWY_INLINE Rows<T> operator-(const Rows<T>& a, const Rows<T>& b)
+{
+    return each(a, b, [](auto x, auto y) { return hn::Sub(x, y); });
+}
+template <class T> HWY_INLINE Rows<T> operator*(const Rows<T>& a, const Rows<T>& b)
+{
+    return each(a, b, [](auto x, auto y) { return hn::Mul(x, y); });
+}
+template <class T> HWY_INLINE Rows<T> magnitude(const Rows<T>& a)
+{
+    return each(a, [](auto x) { return hn::Abs(x); });
+}
 /// Of numbers, as in lanes-inl.hpp.
-template <class T> HWY_INLINE Rows<T> greater(const Rows<T>& a, const Rows<T>& b) { return each(a, b, [](auto x, auto y) { return hn::Max(x, y); }); }
+template <class T> HWY_INLINE Rows<T> greater(const Rows<T>& a, const Rows<T>& b)
+{
+    return each(a, b, [](auto x, auto y) { return hn::Max(x, y); });
+}
 /// x where a > 0, else 0.
 template <class T> HWY_INLINE Rows<T> where_positive(const Rows<T>& a, const Rows<T>& x)
 {
@@ -119,7 +135,8 @@ template <class T> HWY_INLINE Rows<T> fma(const Rows<T>& a, const Rows<T>& b, co
 #if HWY_NATIVE_FMA
         x.v[i] = hn::MulAdd(a.v[i], b.v[i], c.v[i]);
 #else // the emulation would round twice
-        x.v[i] = hn::Set(typename Rows<T>::D(), std::fma(hn::GetLane(a.v[i]), hn::GetLane(b.v[i]), hn::GetLane(c.v[i])));
+        x.v[i] =
+            hn::Set(typename Rows<T>::D(), std::fma(hn::GetLane(a.v[i]), hn::GetLane(b.v[i]), hn::GetLane(c.v[i])));
     static_assert(Rows<T>::width == 1);
 #endif
     return x;
@@ -179,7 +196,8 @@ template <class T> HWY_INLINE Rows<T> row_sums(const Rows<T>& x, const Rows<T>& 
 {
 #if HWY_TARGET != HWY_SCALAR
     if constexpr (sizeof(T) == 4 || Rows<T>::width == 4) {
-        const auto pairs = each(x + exchange_sides(x), y + exchange_sides(y), [](auto a, auto b) { return hn::OddEven(b, a); });
+        const auto pairs =
+            each(x + exchange_sides(x), y + exchange_sides(y), [](auto a, auto b) { return hn::OddEven(b, a); });
         if constexpr (sizeof(T) == 4)
             return each(pairs, [](auto v) { return hn::Add(v, hn::Shuffle1032(v)); });
         else
@@ -206,7 +224,8 @@ template <class T> inline constexpr bool whole_in_one = false;
 template <std::size_t s, class T> HWY_INLINE Rows<T> column(const Rows<T>& x)
 {
     if constexpr (whole_in_one<T>) {
-        HWY_ALIGN constexpr std::int32_t from[16] = {s, 4 + s, 8 + s, 12 + s, s, 4 + s, 8 + s, 12 + s, s, 4 + s, 8 + s, 12 + s, s, 4 + s, 8 + s, 12 + s};
+        HWY_ALIGN constexpr std::int32_t from[16] = {s, 4 + s, 8 + s, 12 + s, s, 4 + s, 8 + s, 12 + s,
+                                                     s, 4 + s, 8 + s, 12 + s, s, 4 + s, 8 + s, 12 + s};
         return {{hn::TableLookupLanes(x.v[0], hn::SetTableIndices(typename Rows<T>::D(), from))}};
     }
     HWY_ALIGN T lane[16], out[16];
@@ -229,7 +248,8 @@ template <class T> HWY_INLINE Rows<T> column_greatest(const Rows<T>& x)
     HWY_ALIGN T lane[16];
     x.store(lane);
     for (std::size_t s = 0; s < 4; ++s) {
-        const T a = lane[s] > lane[4 + s] ? lane[s] : lane[4 + s], b = lane[8 + s] > lane[12 + s] ? lane[8 + s] : lane[12 + s];
+        const T a = lane[s] > lane[4 + s] ? lane[s] : lane[4 + s],
+                b = lane[8 + s] > lane[12 + s] ? lane[8 + s] : lane[12 + s];
         for (std::size_t row = 0; row < 4; ++row)
             lane[4 * row + s] = a > b ? a : b;
     }
@@ -243,7 +263,10 @@ template <class T> HWY_INLINE Rows<T> next(const Rows<T>& x)
     return x + (magnitude(x) * Rows<T>::all(phi) + Rows<T>::all(smallest_subnormal_of<T>));
 }
 /// That, where results are to be proven.
-template <class T> HWY_INLINE Rows<T> up(const Rows<T>& x, Rounding rounding) { return rounding == Rounding::proven ? next(x) : x; }
+template <class T> HWY_INLINE Rows<T> up(const Rows<T>& x, Rounding rounding)
+{
+    return rounding == Rounding::proven ? next(x) : x;
+}
 
 /// x where x < y, else y: y where x is not a number.
 template <class T> HWY_INLINE Rows<T> lesser(const Rows<T>& x, const Rows<T>& y)
@@ -268,17 +291,21 @@ template <class T, std::size_t kAxes> struct Sides {
     Rows<T> chunk[2][row_chunks<kAxes>];
 };
 
-/// Σ_j m_j (q_j, θ_j), nodes alternately in two sums; m in place `mean` of each node's `stride` values. And the nodes' greatest error.
+/// Σ_j m_j (q_j, θ_j), nodes alternately in two sums; m in place `mean` of each node's `stride` values. And the nodes'
+/// greatest error.
 template <class T, std::size_t kAxes>
-HWY_INLINE void mean_map(const PackedBv<T>& bv, const ProjectedMaps<T>& maps, const std::uint32_t* node, const T* value, std::size_t stride, std::size_t mean,
-                         AxisMap<T, kAxes>& out, T& error)
+HWY_INLINE void mean_map(const PackedBv<T>& bv, const ProjectedMaps<T>& maps, const std::uint32_t* node, const T* value,
+                         std::size_t stride, std::size_t mean, AxisMap<T, kAxes>& out, T& error)
 {
     error = 0;
     for (std::size_t j = 0; j < bv.count; ++j)
         error = std::max(error, map_of<T, kAxes>(maps, node[j])[4 * projected_rows(kAxes) - 1]);
     for (std::size_t c = 0; c < row_chunks<kAxes>; ++c) {
         auto even = Rows<T>::all(0), odd = even;
-        auto add = [&](std::size_t j, Rows<T>& sum) HWY_ATTR { sum = fma(Rows<T>::all(value[j * stride + mean]), Rows<T>::load(map_of<T, kAxes>(maps, node[j]) + 16 * c), sum); };
+        auto add = [&](std::size_t j, Rows<T>& sum) HWY_ATTR {
+            sum = fma(Rows<T>::all(value[j * stride + mean]), Rows<T>::load(map_of<T, kAxes>(maps, node[j]) + 16 * c),
+                      sum);
+        };
         std::size_t j = 0;
         for (; j + 1 < bv.count; j += 2) {
             add(j, even);
@@ -290,11 +317,13 @@ HWY_INLINE void mean_map(const PackedBv<T>& bv, const ProjectedMaps<T>& maps, co
     }
 }
 
-/// Adds to `value` max q·(x − pivot) over the rest vertices x, q of `direction`, and q̄·pivot + θ̄ of `base`: the points' greatest q·y +
-/// slack·‖q‖, or what the rest box reaches, where that is less. For one chunk of axes. Where q is not finite, neither is slack·‖q‖, and
-/// where it is, no product overflows (rounding.hpp): no point is passed over as NaN or −∞.
-template <class T>
-HWY_INLINE void add_rest_support(const PackedBv<T>& bv, const T* point, const Rows<T>& base, const Rows<T>& direction, Rounding rounding, Rows<T>& along, Rows<T>& against)
+/// Adds to `value` max q·(x − pivot) over the rest vertices x, q of `direction`, and q̄·pivot + θ̄ of `base`: the points'
+/// greatest q·y + slack·‖q‖, or what the rest box reaches, where that is less. For one chunk of axes. Where q is not
+/// finite, neither is slack·‖q‖, and where it is, no product overflows (rounding.hpp): no point is passed over as NaN
+/// or −∞.
+template <class T> HWY_INLINE void add_rest_support(const PackedBv<T>& bv, const T* point, const Rows<T>& base,
+                                                    const Rows<T>& direction, Rounding rounding, Rows<T>& along,
+                                                    Rows<T>& against)
 {
     const auto position = column<0>(row_sum(base * Rows<T>::each_row(bv.pivot)));
     // Four points at a time, one in a row, with the axes in its lanes.
@@ -302,23 +331,28 @@ HWY_INLINE void add_rest_support(const PackedBv<T>& bv, const T* point, const Ro
     auto most = Rows<T>::all(-infinity_of<T>), most_against = most;
     for (std::size_t i = 0; i < quads_of(bv.points); ++i) {
         const T* y = point + 12 * i;
-        const auto reached = fma(q0, Rows<T>::each_column(y), fma(q1, Rows<T>::each_column(y + 4), q2 * Rows<T>::each_column(y + 8)));
+        const auto reached =
+            fma(q0, Rows<T>::each_column(y), fma(q1, Rows<T>::each_column(y + 4), q2 * Rows<T>::each_column(y + 8)));
         most = greater(reached, most);
         most_against = greater(zero - reached, most_against);
     }
     // ‖q‖, or |q|₁ where squares may vanish or overflow.
-    const auto size0 = magnitude(q0), size1 = magnitude(q1), size2 = magnitude(q2), most_q = greater(greater(size0, size1), size2);
-    const auto root = each((q0 * q0 + q1 * q1) + q2 * q2, [](auto x) { return hn::Sqrt(x); }), sum = (size0 + size1) + size2;
+    const auto size0 = magnitude(q0), size1 = magnitude(q1), size2 = magnitude(q2),
+               most_q = greater(greater(size0, size1), size2);
+    const auto root = each((q0 * q0 + q1 * q1) + q2 * q2, [](auto x) { return hn::Sqrt(x); }),
+               sum = (size0 + size1) + size2;
     Rows<T> norm;
     const typename Rows<T>::D d;
     for (std::size_t i = 0; i < Rows<T>::vectors; ++i) {
-        const auto safe = hn::And(hn::Gt(most_q.v[i], hn::Set(d, static_cast<T>(0x1p-40))), hn::Lt(most_q.v[i], hn::Set(d, static_cast<T>(0x1p40))));
+        const auto safe = hn::And(hn::Gt(most_q.v[i], hn::Set(d, static_cast<T>(0x1p-40))),
+                                  hn::Lt(most_q.v[i], hn::Set(d, static_cast<T>(0x1p40))));
         norm.v[i] = hn::IfThenElse(safe, root.v[i], sum.v[i]);
     }
     const auto slack = norm * Rows<T>::all(bv.slack);
     auto all = [&](int s) HWY_ATTR { return Rows<T>::all(bv.centre[s] - bv.pivot[s]); };
     const auto middle = fma(q0, all(0), fma(q1, all(1), q2 * all(2)));
-    const auto radius = fma(size0, Rows<T>::all(bv.half[0]), fma(size1, Rows<T>::all(bv.half[1]), size2 * Rows<T>::all(bv.half[2])));
+    const auto radius =
+        fma(size0, Rows<T>::all(bv.half[0]), fma(size1, Rows<T>::all(bv.half[1]), size2 * Rows<T>::all(bv.half[2])));
     const auto reach = lesser(radius + middle, up(column_greatest(most) + slack, rounding));
     const auto reach_against = lesser(radius - middle, up(column_greatest(most_against) + slack, rounding));
     along = up(along + up(reach + position, rounding), rounding);

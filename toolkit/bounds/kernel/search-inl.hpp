@@ -36,20 +36,23 @@ template <class T, std::size_t kAxes> void store(const Sides<T, kAxes>& sides, P
 }
 
 /// What the errors of the BV's nodes add.
-template <class T, std::size_t kAxes> double widening(const KernelInput<T>& in, const PackedBv<T>& bv, const Bound<T, kAxes>& bound)
+template <class T, std::size_t kAxes>
+double widening(const KernelInput<T>& in, const PackedBv<T>& bv, const Bound<T, kAxes>& bound)
 {
     const double error = static_cast<double>(bound.error);
     return in.rounding == Rounding::proven ? succ(error * static_cast<double>(bv.error_factor)) : error;
 }
 
-template <class T, std::size_t kAxes>
-void intersect(const KernelInput<T>& in, const PackedBv<T>& bv, const Extrema<T, kAxes>& e, const PerSide<T, kAxes>& lambda, const Dual<T, kAxes>& d, Bound<T, kAxes>& out)
+template <class T, std::size_t kAxes> void intersect(const KernelInput<T>& in, const PackedBv<T>& bv,
+                                                     const Extrema<T, kAxes>& e, const PerSide<T, kAxes>& lambda,
+                                                     const Dual<T, kAxes>& d, Bound<T, kAxes>& out)
 {
-    const auto factor = Lanes<T>::all(dual_sum_factor<T>(takes_one_by_one(bv.kind) ? row_depth(bv.count) : sum_depth(bv.count)));
+    const auto factor =
+        Lanes<T>::all(dual_sum_factor<T>(takes_one_by_one(bv.kind) ? row_depth(bv.count) : sum_depth(bv.count)));
     const auto underflow = Lanes<T>::all(dual_sum_underflow<T>(bv.count));
     for (std::size_t i = 0; i < 2 * lambda.room; i += block_lanes) {
         const auto at = lanes_of(lambda, i), upper = lanes_of(d.upper, i), both = lanes_of(d.lower, i) + upper;
-        auto value = at + both; // dual_value
+        auto value = at + both;                // dual_value
         if (in.rounding == Rounding::proven) { // proven_dual_value
             const auto width = greater(lanes_of(e.greatest, i) - at, at + opposite_lanes(e.greatest, i));
             value = next(at + next(both + next(factor * (width + upper) + underflow)));
@@ -58,8 +61,8 @@ void intersect(const KernelInput<T>& in, const PackedBv<T>& bv, const Extrema<T,
     }
 }
 
-template <class T, std::size_t kAxes>
-void select_best(const PackedBv<T>& bv, const T* block, const T* b, std::vector<std::pair<T, T>>& scratch, PerSide<T, kAxes>& lambda)
+template <class T, std::size_t kAxes> void select_best(const PackedBv<T>& bv, const T* block, const T* b,
+                                                       std::vector<std::pair<T, T>>& scratch, PerSide<T, kAxes>& lambda)
 {
     for (std::size_t s = 0; s < 2; ++s)
         for (std::size_t a = 0; a < kAxes; ++a) {
@@ -75,21 +78,25 @@ void select_best(const PackedBv<T>& bv, const T* block, const T* b, std::vector<
 }
 
 /// Whether no side of the bound may exceed Eq. 12 clearly.
-template <class T, std::size_t kAxes> bool is_close(const KernelInput<T>& in, const PackedBv<T>& bv, const Bound<T, kAxes>& bound)
+template <class T, std::size_t kAxes>
+bool is_close(const KernelInput<T>& in, const PackedBv<T>& bv, const Bound<T, kAxes>& bound)
 {
     const auto wider = Lanes<T>::all(static_cast<T>(widening<T, kAxes>(in, bv, bound)));
     bool close = true;
     for (std::size_t i = 0; i < 2 * bound.floor.room; i += block_lanes) {
-        const auto floor = lanes_of(bound.floor, i), width = greater(floor + opposite_lanes(bound.floor, i), Lanes<T>::all(0));
+        const auto floor = lanes_of(bound.floor, i),
+                   width = greater(floor + opposite_lanes(bound.floor, i), Lanes<T>::all(0));
         close &= at_most(lanes_of(bound.value, i) + wider, floor + Lanes<T>::all(T(clearly_looser)) * width);
     }
     return close;
 }
 
-/// λ near the best one by at most in.passes evaluations of D, which is evaluate<with its mass>(λ, D). The kind local, whose best D is at most
-/// Eq. 12, goes on a while where it has a guard, until it is close to its floors, which are those of its probes and its tangents.
-template <class T, std::size_t kAxes, class Evaluate>
-void search(const KernelInput<T>& in, const PackedBv<T>& bv, const Extrema<T, kAxes>& e, T* remembered, Bound<T, kAxes>& out, const Evaluate& evaluate)
+/// λ near the best one by at most in.passes evaluations of D, which is evaluate<with its mass>(λ, D). The kind local,
+/// whose best D is at most Eq. 12, goes on a while where it has a guard, until it is close to its floors, which are
+/// those of its probes and its tangents.
+template <class T, std::size_t kAxes, class Evaluate> void search(const KernelInput<T>& in, const PackedBv<T>& bv,
+                                                                  const Extrema<T, kAxes>& e, T* remembered,
+                                                                  Bound<T, kAxes>& out, const Evaluate& evaluate)
 {
     const bool guarded = bv.guard != 0 && bv.kind == Method::local;
     PerSide<T, kAxes> lambda;
@@ -119,7 +126,8 @@ void search(const KernelInput<T>& in, const PackedBv<T>& bv, const Extrema<T, kA
     }
     constexpr int most_passes = 3;
     std::optional<TangentSearch<T>> tangents[2][kAxes];
-    for (int pass = 0; pass < in.passes || (guarded && pass < most_passes && !is_close<T, kAxes>(in, bv, out)); ++pass) {
+    for (int pass = 0; pass < in.passes || (guarded && pass < most_passes && !is_close<T, kAxes>(in, bv, out));
+         ++pass) {
         evaluate.template operator()<true>(lambda, d);
         intersect<T, kAxes>(in, bv, e, lambda, d, out);
         for (std::size_t s = 0; s < 2; ++s)

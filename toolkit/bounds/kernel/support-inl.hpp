@@ -27,11 +27,11 @@ template <class T, std::size_t kAxes> struct RowDual {
     SidesInRows<T, kAxes> lower, upper, mass;
 };
 
-/// b̂_j of every simulation node, with the reference map taken off, along and against the axes, into b: per chunk and node 16.
-/// b̂± = Σ_s (|dq_s| e_s ± dq_s c_s), so b̂₊ ≥ −b̂₋ whatever is rounded.
+/// b̂_j of every simulation node, with the reference map taken off, along and against the axes, into b: per chunk and
+/// node 16. b̂± = Σ_s (|dq_s| e_s ± dq_s c_s), so b̂₊ ≥ −b̂₋ whatever is rounded.
 template <class T, std::size_t kAxes>
-HWY_INLINE void support_extrema(const PackedBv<T>& bv, const ProjectedMaps<T>& maps, const std::uint32_t* node, const T* value, const AxisMap<T, kAxes>& reference, T* b,
-                                RowExtrema<T, kAxes>& out)
+HWY_INLINE void support_extrema(const PackedBv<T>& bv, const ProjectedMaps<T>& maps, const std::uint32_t* node,
+                                const T* value, const AxisMap<T, kAxes>& reference, T* b, RowExtrema<T, kAxes>& out)
 {
     constexpr std::size_t stride = PackedBv<T>::values(Method::support);
     for (std::size_t c = 0; c < row_chunks<kAxes>; ++c) {
@@ -39,7 +39,8 @@ HWY_INLINE void support_extrema(const PackedBv<T>& bv, const ProjectedMaps<T>& m
         auto most = Rows<T>::all(-infinity_of<T>), mean = zero;
         for (std::size_t j = 0; j < bv.count; ++j, b += 16) {
             const auto d = Rows<T>::load(map_of<T, kAxes>(maps, node[j]) + 16 * c) - reference.chunk[c];
-            const auto position = d * with_fourth(Rows<T>::each_row(value + j * stride), one), radius = magnitude(d) * with_fourth(Rows<T>::each_row(value + j * stride + support_half), zero);
+            const auto position = d * with_fourth(Rows<T>::each_row(value + j * stride), one),
+                       radius = magnitude(d) * with_fourth(Rows<T>::each_row(value + j * stride + support_half), zero);
             const auto sides = row_sums(radius + position, radius - position);
             sides.store(b);
             most = greater(sides, most);
@@ -52,7 +53,8 @@ HWY_INLINE void support_extrema(const PackedBv<T>& bv, const ProjectedMaps<T>& m
 
 /// D(λ) in parts; with kMass, Σ r over b > λ too. Nodes alternately in two sums.
 template <class T, std::size_t kAxes, bool kMass>
-HWY_INLINE void support_dual(const PackedBv<T>& bv, const T* value, const T* b, const SidesInRows<T, kAxes>& lambda, RowDual<T, kAxes>& out)
+HWY_INLINE void support_dual(const PackedBv<T>& bv, const T* value, const T* b, const SidesInRows<T, kAxes>& lambda,
+                             RowDual<T, kAxes>& out)
 {
     constexpr std::size_t stride = PackedBv<T>::values(Method::support);
     const auto zero = Rows<T>::all(0);
@@ -80,7 +82,8 @@ HWY_INLINE void support_dual(const PackedBv<T>& bv, const T* value, const T* b, 
 }
 
 /// Values per side and axis as an array, and back.
-template <class T, std::size_t kAxes> HWY_INLINE void to_array(const SidesInRows<T, kAxes>& rows, PerSide<T, kAxes>& out)
+template <class T, std::size_t kAxes>
+HWY_INLINE void to_array(const SidesInRows<T, kAxes>& rows, PerSide<T, kAxes>& out)
 {
     for (std::size_t c = 0; c < row_chunks<kAxes>; ++c) {
         HWY_ALIGN T lane[16];
@@ -91,7 +94,8 @@ template <class T, std::size_t kAxes> HWY_INLINE void to_array(const SidesInRows
     }
     out.repeat_last();
 }
-template <class T, std::size_t kAxes> HWY_INLINE void from_array(const PerSide<T, kAxes>& in, SidesInRows<T, kAxes>& rows)
+template <class T, std::size_t kAxes>
+HWY_INLINE void from_array(const PerSide<T, kAxes>& in, SidesInRows<T, kAxes>& rows)
 {
     for (std::size_t c = 0; c < row_chunks<kAxes>; ++c) {
         HWY_ALIGN T lane[16] = {};
@@ -102,11 +106,14 @@ template <class T, std::size_t kAxes> HWY_INLINE void from_array(const PerSide<T
     }
 }
 
-/// The lesser of the greatest b and D(λ), λ at mean b + start·(greatest b − mean b): one pass, all in rows. See proven_dual_value.
-template <class T, std::size_t kAxes>
-HWY_INLINE void support_in_one_pass(const PackedBv<T>& bv, const T* value, const T* b, const RowExtrema<T, kAxes>& e, Rounding rounding, Sides<T, kAxes>& bound)
+/// The lesser of the greatest b and D(λ), λ at mean b + start·(greatest b − mean b): one pass, all in rows. See
+/// proven_dual_value.
+template <class T, std::size_t kAxes> HWY_INLINE void support_in_one_pass(const PackedBv<T>& bv, const T* value,
+                                                                          const T* b, const RowExtrema<T, kAxes>& e,
+                                                                          Rounding rounding, Sides<T, kAxes>& bound)
 {
-    const auto factor = Rows<T>::all(dual_sum_factor<T>(row_depth(bv.count))), underflow = Rows<T>::all(dual_sum_underflow<T>(bv.count));
+    const auto factor = Rows<T>::all(dual_sum_factor<T>(row_depth(bv.count))),
+               underflow = Rows<T>::all(dual_sum_underflow<T>(bv.count));
     SidesInRows<T, kAxes> lambda;
     for (std::size_t c = 0; c < row_chunks<kAxes>; ++c)
         lambda[c] = e.mean[c] + Rows<T>::all(bv.start) * (e.greatest[c] - e.mean[c]);

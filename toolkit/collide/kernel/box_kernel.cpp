@@ -33,7 +33,8 @@ template <std::size_t kSide> BvPair* test(const BoxInput& in, std::span<const Bo
         for (std::uint32_t a = a0; a < a_end; ++a)
             for (std::uint32_t b = b0; b < b_end; ++b) {
                 *out = {a, b};
-                out += !disjoint<kSide>(in.dops_a + std::size_t{a} * 2 * kSide, in.dops_b + std::size_t{b} * 2 * kSide, in.shift);
+                out += !disjoint<kSide>(in.dops_a + std::size_t{a} * 2 * kSide, in.dops_b + std::size_t{b} * 2 * kSide,
+                                        in.shift);
             }
     }
     return out;
@@ -42,10 +43,14 @@ template <std::size_t kSide> BvPair* test(const BoxInput& in, std::span<const Bo
 BvPair* test_any(const BoxInput& in, std::span<const BoxTest> tests, BvPair* out)
 {
     switch (in.side) {
-    case 4: return test<4>(in, tests, out);
-    case 8: return test<8>(in, tests, out);
-    case 12: return test<12>(in, tests, out);
-    default: return test<16>(in, tests, out);
+    case 4:
+        return test<4>(in, tests, out);
+    case 8:
+        return test<8>(in, tests, out);
+    case 12:
+        return test<12>(in, tests, out);
+    default:
+        return test<16>(in, tests, out);
     }
 }
 
@@ -56,7 +61,10 @@ HWY_AFTER_NAMESPACE();
 namespace cinch {
 HWY_EXPORT(test_any);
 
-BvPair* test_boxes(const BoxInput& input, std::span<const BoxTest> tests, BvPair* out) { return HWY_DYNAMIC_DISPATCH(test_any)(input, tests, out); }
+BvPair* test_boxes(const BoxInput& input, std::span<const BoxTest> tests, BvPair* out)
+{
+    return HWY_DYNAMIC_DISPATCH(test_any)(input, tests, out);
+}
 
 } // namespace cinch
 #endif

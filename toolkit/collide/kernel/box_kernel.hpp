@@ -21,12 +21,13 @@ struct BoxTest {
 struct BoxInput {
     std::size_t side = 4; ///< dop_side(k)
     const float *dops_a, *dops_b;
-    const float* shift;   ///< dop_floats(k): along every direction where b's origin lies from a's, negated, see pair_shift
+    const float*
+        shift; ///< dop_floats(k): along every direction where b's origin lies from a's, negated, see pair_shift
 };
 
-/// Writes the pairs that may overlap to `out`, which has room for four per test, in order; returns the end. Written as a rejection: what is
-/// not a number overlaps. A pair is rejected only if its k-DOPs are disjoint: fl(A + B) has the sign of A + B, and the shift has room for
-/// the rounding of A + B where it is not 0.
+/// Writes the pairs that may overlap to `out`, which has room for four per test, in order; returns the end. Written as
+/// a rejection: what is not a number overlaps. A pair is rejected only if its k-DOPs are disjoint: fl(A + B) has the
+/// sign of A + B, and the shift has room for the rounding of A + B where it is not 0.
 BvPair* test_boxes(const BoxInput& input, std::span<const BoxTest> tests, BvPair* out);
 
 } // namespace cinch

@@ -61,9 +61,9 @@ template <std::size_t L> struct Boxes {
 
 /// b's place relative to a's reference point. Fours are for x, y, z and nothing.
 struct Relative {
-    float shift[3];                    ///< of b's corners
-    HWY_ALIGN float low[4], high[4];   ///< of the box around b's leaf, grown by a's error
-    float error;                       ///< of shift
+    float shift[3];                  ///< of b's corners
+    HWY_ALIGN float low[4], high[4]; ///< of the box around b's leaf, grown by a's error
+    float error;                     ///< of shift
 };
 HWY_INLINE Relative relative(const ClusterInput& in, const ClusterPair& pair, const LeafPlace& a, const LeafPlace& b)
 {
@@ -75,9 +75,12 @@ HWY_INLINE Relative relative(const ClusterInput& in, const ClusterPair& pair, co
         out.shift[r] = between + in.shift[r];
         far = std::max(far, std::max(std::abs(between), std::abs(out.shift[r])));
     }
-    const auto shift = Four::load_unaligned(in.shift), shift_error = Four::all(in.shift_error), start = Four::load_unaligned(a.reference), error = Four::all(a.error);
+    const auto shift = Four::load_unaligned(in.shift), shift_error = Four::all(in.shift_error),
+               start = Four::load_unaligned(a.reference), error = Four::all(a.error);
     next(next(next(next(Four::load_unaligned(pair.dop_b) + shift) + shift_error) - start) + error).store(out.high);
-    (Four::all(0) - next(next(next(next(Four::load_unaligned(pair.dop_b + in.side) - shift) + shift_error) + start) + error)).store(out.low);
+    (Four::all(0) -
+     next(next(next(next(Four::load_unaligned(pair.dop_b + in.side) - shift) + shift_error) + start) + error))
+        .store(out.low);
     out.error = succ(2 * unit_roundoff_of<float> * far + in.shift_error); // two roundings
     return out;
 }
@@ -88,7 +91,8 @@ template <std::size_t L> struct Candidates {
     std::uint8_t i[L * L + L], j[L * L + L]; // and what fills the last lanes
 };
 
-template <std::size_t L> HWY_INLINE void gather(const float* slot, const std::uint8_t* triangle, const float (&shift)[3], Triangles<L>& out)
+template <std::size_t L>
+HWY_INLINE void gather(const float* slot, const std::uint8_t* triangle, const float (&shift)[3], Triangles<L>& out)
 {
     const std::uint8_t* const corner = corners_of(slot, L);
     for (std::size_t c = 0; c < 3; ++c) {
@@ -99,7 +103,8 @@ template <std::size_t L> HWY_INLINE void gather(const float* slot, const std::ui
     }
 }
 
-template <std::size_t L> void test_pair(const ClusterInput& in, const ClusterPair& pair, std::uint32_t index, std::vector<TriangleHit>& out, std::uint64_t& tests)
+template <std::size_t L> void test_pair(const ClusterInput& in, const ClusterPair& pair, std::uint32_t index,
+                                        std::vector<TriangleHit>& out, std::uint64_t& tests)
 {
     constexpr float at_home[3] = {0, 0, 0};
     const LeafPlace &place_a = place_of(pair.slot_a, L), &place_b = place_of(pair.slot_b, L);
@@ -152,19 +157,27 @@ template <std::size_t L> void test_pair(const ClusterInput& in, const ClusterPai
         const Answer answer = intersect_lanes<L>(p, q, left >= L ? (1u << L) - 1 : (1u << left) - 1, s);
         for (std::uint32_t some = answer.hits | answer.doubtful; some != 0; some &= some - 1) {
             const auto lane = static_cast<std::size_t>(std::countr_zero(some));
-            out.push_back({index, candidates.i[first + lane], candidates.j[first + lane], (answer.doubtful >> lane & 1) != 0});
+            out.push_back(
+                {index, candidates.i[first + lane], candidates.j[first + lane], (answer.doubtful >> lane & 1) != 0});
         }
     }
 }
 
-void test_list(const ClusterInput& in, std::span<const ClusterPair> pairs, std::uint32_t first, std::vector<TriangleHit>& out, std::uint64_t& tests)
+void test_list(const ClusterInput& in, std::span<const ClusterPair> pairs, std::uint32_t first,
+               std::vector<TriangleHit>& out, std::uint64_t& tests)
 {
     for (std::size_t n = 0; n < pairs.size(); ++n) {
         const auto index = static_cast<std::uint32_t>(first + n);
         switch (in.lanes) {
-        case 4: test_pair<4>(in, pairs[n], index, out, tests); break;
-        case 8: test_pair<8>(in, pairs[n], index, out, tests); break;
-        default: test_pair<16>(in, pairs[n], index, out, tests); break;
+        case 4:
+            test_pair<4>(in, pairs[n], index, out, tests);
+            break;
+        case 8:
+            test_pair<8>(in, pairs[n], index, out, tests);
+            break;
+        default:
+            test_pair<16>(in, pairs[n], index, out, tests);
+            break;
         }
     }
 }
@@ -176,7 +189,8 @@ HWY_AFTER_NAMESPACE();
 namespace cinch {
 HWY_EXPORT(test_list);
 
-void test_clusters(const ClusterInput& input, std::span<const ClusterPair> pairs, std::uint32_t first_pair, std::vector<TriangleHit>& out, std::uint64_t& triangle_tests)
+void test_clusters(const ClusterInput& input, std::span<const ClusterPair> pairs, std::uint32_t first_pair,
+                   std::vector<TriangleHit>& out, std::uint64_t& triangle_tests)
 {
     HWY_DYNAMIC_DISPATCH(test_list)(input, pairs, first_pair, out, triangle_tests);
 }

@@ -16,7 +16,8 @@ HWY_BEFORE_NAMESPACE();
 namespace cinch::HWY_NAMESPACE {
 
 inline constexpr float root_3 = 1.7320510f, two_root_3 = 3.4641020f; // rounded up
-inline constexpr float margin_factor = 1 + 0x1p-16f, margin_underflow = 0x1p-120f, greatest_span = 0x1p41f; // see test_clusters
+inline constexpr float margin_factor = 1 + 0x1p-16f, margin_underflow = 0x1p-120f,
+                       greatest_span = 0x1p41f; // see test_clusters
 
 template <std::size_t L> using Point = Wide<L>[3]; ///< one in each lane
 
@@ -29,7 +30,8 @@ template <std::size_t L> struct Triangles {
     {
         auto squared = Wide<L>::all(margin_underflow); // d ≥ 2^-60
         for (std::size_t r = 0; r < 3; ++r) {
-            const auto extent = greater(greater(corner[0][r], corner[1][r]), corner[2][r]) - less(less(corner[0][r], corner[1][r]), corner[2][r]);
+            const auto extent = greater(greater(corner[0][r], corner[1][r]), corner[2][r]) -
+                                less(less(corner[0][r], corner[1][r]), corner[2][r]);
             squared = fma(extent, extent, squared);
         }
         d = root(squared);
@@ -69,7 +71,8 @@ template <std::size_t L> HWY_INLINE void subtract(const Point<L>& a, const Point
         out[r] = a[r] - b[r];
 }
 
-/// Of a pair of triangles in every lane: g and D + √3 g, and whether floats may decide: D is a number below the limit. See test_clusters.
+/// Of a pair of triangles in every lane: g and D + √3 g, and whether floats may decide: D is a number below the limit.
+/// See test_clusters.
 template <std::size_t L> struct Spread {
     Wide<L> off, reach;
     std::uint32_t decides;
@@ -90,8 +93,8 @@ template <std::size_t L> struct Spread {
     }
 };
 
-/// Turns the corners so that the first is the one that certain sides, given by `above`, separate from the other two; then exchanges the other
-/// two where asked.
+/// Turns the corners so that the first is the one that certain sides, given by `above`, separate from the other two;
+/// then exchanges the other two where asked.
 struct Apex {
     std::uint32_t first, second, third; ///< which corner it is
 
@@ -101,29 +104,34 @@ struct Apex {
         second = ~(above[0] ^ above[2]) & ~first;
         third = ~(first | second);
     }
-    std::uint32_t of(const std::uint32_t (&bits)[3]) const { return (bits[0] & first) | (bits[1] & second) | (bits[2] & third); }
+    std::uint32_t of(const std::uint32_t (&bits)[3]) const
+    {
+        return (bits[0] & first) | (bits[1] & second) | (bits[2] & third);
+    }
 };
 template <std::size_t L> HWY_INLINE void turn(const Apex& apex, std::uint32_t exchange, Point<L> (&corner)[3])
 {
     for (std::size_t r = 0; r < 3; ++r) {
         const auto a = corner[0][r], b = corner[1][r], c = corner[2][r];
         corner[0][r] = select(apex.second, b, select(apex.third, c, a));
-        const auto next = select(apex.second, c, select(apex.third, a, b)), last = select(apex.second, a, select(apex.third, b, c));
+        const auto next = select(apex.second, c, select(apex.third, a, b)),
+                   last = select(apex.second, a, select(apex.third, b, c));
         corner[1][r] = select(exchange, last, next);
         corner[2][r] = select(exchange, next, last);
     }
 }
 
-/// Lanes that certainly intersect, and those that are too close to call; all others certainly do not. Triangle pairs p and q in the lanes of
-/// `left`, coordinates between them off by s at most.
+/// Lanes that certainly intersect, and those that are too close to call; all others certainly do not. Triangle pairs p
+/// and q in the lanes of `left`, coordinates between them off by s at most.
 struct Answer {
     std::uint32_t hits, doubtful;
 };
-template <std::size_t L> HWY_INLINE Answer intersect_lanes(Triangles<L>& p, Triangles<L>& q, std::uint32_t left, float s)
+template <std::size_t L>
+HWY_INLINE Answer intersect_lanes(Triangles<L>& p, Triangles<L>& q, std::uint32_t left, float s)
 {
     const Spread<L> spread(p.d, q.d, s);
     std::uint32_t above_p[3], above_q[3], certain = left & spread.decides;
-    auto sides = [&](const Triangles<L>& plane, const Triangles<L>& points, std::uint32_t (&above)[3]) HWY_ATTR {
+    auto sides = [&](const Triangles<L>& plane, const Triangles<L>& points, std::uint32_t(&above)[3]) HWY_ATTR {
         Point<L> e, f;
         subtract<L>(plane.corner[1], plane.corner[0], e);
         subtract<L>(plane.corner[2], plane.corner[0], f);
@@ -146,8 +154,8 @@ template <std::size_t L> HWY_INLINE Answer intersect_lanes(Triangles<L>& p, Tria
     certain &= left;
     if (certain == 0)
         return {0, left};
-    // [Guigue, Devillers 2003], as in triangle_pair.cpp; orientation(q0, q1, p0, p1) = −det[q1 − q0, p1 − p0, p0 − q0] and
-    // orientation(q0, q2, p2, p0) = det[q2 − q0, p2 − p0, p0 − q0] must not be positive.
+    // [Guigue, Devillers 2003], as in triangle_pair.cpp; orientation(q0, q1, p0, p1) = −det[q1 − q0, p1 − p0, p0 − q0]
+    // and orientation(q0, q2, p2, p0) = det[q2 − q0, p2 − p0, p0 − q0] must not be positive.
     const Apex apex_p(above_p), apex_q(above_q);
     turn<L>(apex_p, ~apex_q.of(above_q), p.corner);
     turn<L>(apex_q, ~apex_p.of(above_p), q.corner);

@@ -27,7 +27,8 @@ template <class D, class V = hn::Vec<D>> HWY_INLINE V fused(D d, V a, V b, V c)
 }
 
 // One coordinate of eight vertices in lanes. Double: products and sums rounded one by one. Float: fused.
-template <class T> HWY_INLINE void evaluate(const T* rest, const std::uint32_t* node, const T* weight, std::size_t count, const T* maps, T* place)
+template <class T> HWY_INLINE void evaluate(const T* rest, const std::uint32_t* node, const T* weight,
+                                            std::size_t count, const T* maps, T* place)
 {
     using D = hn::CappedTag<T, 8>;
     const D d;
@@ -40,7 +41,8 @@ template <class T> HWY_INLINE void evaluate(const T* rest, const std::uint32_t* 
             auto add = [&](const T* r, auto& sum) HWY_ATTR {
                 const auto a = hn::Set(d, r[0]), b = hn::Set(d, r[1]), c = hn::Set(d, r[2]), t = hn::Set(d, r[3]);
                 if constexpr (sizeof(T) == 8)
-                    sum = hn::Add(sum, hn::Mul(w, hn::Add(hn::Add(hn::Add(hn::Mul(a, x), hn::Mul(b, y)), hn::Mul(c, z)), t)));
+                    sum = hn::Add(
+                        sum, hn::Mul(w, hn::Add(hn::Add(hn::Add(hn::Mul(a, x), hn::Mul(b, y)), hn::Mul(c, z)), t)));
                 else
                     sum = fused(d, w, fused(d, a, x, fused(d, b, y, fused(d, c, z, t))), sum);
             };
@@ -54,11 +56,13 @@ template <class T> HWY_INLINE void evaluate(const T* rest, const std::uint32_t* 
     }
 }
 
-void evaluate_double(const double* rest, const std::uint32_t* node, const double* weight, std::size_t count, const double* maps, double* place)
+void evaluate_double(const double* rest, const std::uint32_t* node, const double* weight, std::size_t count,
+                     const double* maps, double* place)
 {
     evaluate(rest, node, weight, count, maps, place);
 }
-void evaluate_float(const float* rest, const std::uint32_t* node, const float* weight, std::size_t count, const float* maps, float* place)
+void evaluate_float(const float* rest, const std::uint32_t* node, const float* weight, std::size_t count,
+                    const float* maps, float* place)
 {
     evaluate(rest, node, weight, count, maps, place);
 }
@@ -71,11 +75,13 @@ namespace cinch {
 HWY_EXPORT(evaluate_double);
 HWY_EXPORT(evaluate_float);
 
-void evaluate_group(const double* rest, const std::uint32_t* node, const double* weight, std::size_t count, const double* maps, double* place) noexcept
+void evaluate_group(const double* rest, const std::uint32_t* node, const double* weight, std::size_t count,
+                    const double* maps, double* place) noexcept
 {
     HWY_DYNAMIC_DISPATCH(evaluate_double)(rest, node, weight, count, maps, place);
 }
-void evaluate_group(const float* rest, const std::uint32_t* node, const float* weight, std::size_t count, const float* maps, float* place) noexcept
+void evaluate_group(const float* rest, const std::uint32_t* node, const float* weight, std::size_t count,
+                    const float* maps, float* place) noexcept
 {
     HWY_DYNAMIC_DISPATCH(evaluate_float)(rest, node, weight, count, maps, place);
 }

@@ -60,10 +60,22 @@ template <class F> HWY_INLINE Quad each(const Quad& a, const Quad& b, F&& f)
         q.v[i] = f(a.v[i], b.v[i]);
     return q;
 }
-HWY_INLINE Quad operator+(const Quad& a, const Quad& b) { return each(a, b, [](auto x, auto y) { return hn::Add(x, y); }); }
-HWY_INLINE Quad operator-(const Quad& a, const Quad& b) { return each(a, b, [](auto x, auto y) { return hn::Sub(x, y); }); }
-HWY_INLINE Quad operator*(const Quad& a, const Quad& b) { return each(a, b, [](auto x, auto y) { return hn::Mul(x, y); }); }
-HWY_INLINE Quad operator/(const Quad& a, const Quad& b) { return each(a, b, [](auto x, auto y) { return hn::Div(x, y); }); }
+HWY_INLINE Quad operator+(const Quad& a, const Quad& b)
+{
+    return each(a, b, [](auto x, auto y) { return hn::Add(x, y); });
+}
+HWY_INLINE Quad operator-(const Quad& a, const Quad& b)
+{
+    return each(a, b, [](auto x, auto y) { return hn::Sub(x, y); });
+}
+HWY_INLINE Quad operator*(const Quad& a, const Quad& b)
+{
+    return each(a, b, [](auto x, auto y) { return hn::Mul(x, y); });
+}
+HWY_INLINE Quad operator/(const Quad& a, const Quad& b)
+{
+    return each(a, b, [](auto x, auto y) { return hn::Div(x, y); });
+}
 HWY_INLINE Quad times(const Quad& a, double s) { return a * Quad::all(s); }
 /// a b + c, rounded once.
 HWY_INLINE Quad multiply_add(const Quad& a, const Quad& b, const Quad& c)

@@ -60,7 +60,8 @@ struct NodeSums {
 };
 
 // maps: per node A_r and U_r in rows of four, 16 floats each.
-HWY_INLINE NodeSums prepare_nodes(const LeafInput& in, const PackedLeaf& leaf, const std::uint32_t* influence, float* maps)
+HWY_INLINE NodeSums prepare_nodes(const LeafInput& in, const PackedLeaf& leaf, const std::uint32_t* influence,
+                                  float* maps)
 {
     HWY_ALIGN static constexpr float third[4] = {0, 0, 0, 1}, first_three[4] = {1, 1, 1, 0};
     const auto pivot = Record::fours(leaf.pivot), threes = Record::fours(third);
@@ -111,8 +112,10 @@ HWY_INLINE LeafPlace errors_of(const NodeSums& m, const PackedLeaf& leaf, float 
         place.reference[r] = reference[4 * r];
     constexpr float u = unit_roundoff_of<float> * 1.02f;
     const float n = static_cast<float>(leaf.nodes + 8);
-    const float extent = ((leaf.reach[0] + leaf.reach[1]) + leaf.reach[2]) + ((std::abs(leaf.pivot[0]) + std::abs(leaf.pivot[1])) + std::abs(leaf.pivot[2]));
-    const auto sum = fma(m.spread, Record::all(n * u), fma(m.maps, Record::all(n * 0x1p-120f), Record::all((n * 0x1p-120f) * (1 + extent))));
+    const float extent = ((leaf.reach[0] + leaf.reach[1]) + leaf.reach[2]) +
+                         ((std::abs(leaf.pivot[0]) + std::abs(leaf.pivot[1])) + std::abs(leaf.pivot[2]));
+    const auto sum = fma(m.spread, Record::all(n * u),
+                         fma(m.maps, Record::all(n * 0x1p-120f), Record::all((n * 0x1p-120f) * (1 + extent))));
     const auto six_u = Record::all(6 * u);
     place.error = succ(succ(greatest_row(fma(m.images, six_u, sum))) + vertex_error);
     place.difference = succ(succ(greatest_row(fma(m.differing, six_u, sum + sum))) + 2 * vertex_error);
@@ -120,7 +123,8 @@ HWY_INLINE LeafPlace errors_of(const NodeSums& m, const PackedLeaf& leaf, float 
 }
 
 // The greatest x on either side of every axis, with their errors.
-template <std::size_t L> HWY_INLINE void bound_vertices(const LeafInput& in, const Wide<L> (&p)[3], const LeafPlace& place, float* dop)
+template <std::size_t L>
+HWY_INLINE void bound_vertices(const LeafInput& in, const Wide<L> (&p)[3], const LeafPlace& place, float* dop)
 {
     const std::size_t side = dop_side(in.kdop);
     const auto axes = axes_of(in.kdop);
@@ -132,7 +136,8 @@ template <std::size_t L> HWY_INLINE void bound_vertices(const LeafInput& in, con
         return;
     // Sums of up to three coordinates pass 2 roundings.
     const float far = greatest(greater(greater(magnitude(p[0]), magnitude(p[1])), magnitude(p[2])));
-    const float whole = far + std::max(std::max(std::abs(place.reference[0]), std::abs(place.reference[1])), std::abs(place.reference[2]));
+    const float whole = far + std::max(std::max(std::abs(place.reference[0]), std::abs(place.reference[1])),
+                                       std::abs(place.reference[2]));
     const float wider = succ(succ(3 * place.error) + 16 * unit_roundoff_of<float> * whole);
     for (std::size_t a = 3; a < axes.size(); ++a) {
         Wide<L> along = Wide<L>::all(0);
@@ -153,7 +158,8 @@ template <std::size_t L> void evaluate_leaf(const LeafInput& in, const LeafJob& 
     const LeafRun run{L, leaf.nodes};
     const float* const value = in.value + leaf.first;
     const float* const weights = value + run.weights();
-    const NodeSums nodes = prepare_nodes(in, leaf, reinterpret_cast<const std::uint32_t*>(value + run.influences()), maps);
+    const NodeSums nodes =
+        prepare_nodes(in, leaf, reinterpret_cast<const std::uint32_t*>(value + run.influences()), maps);
     const LeafPlace place = errors_of(nodes, leaf, static_cast<float>(in.vertex_error));
     if (!(place.error < infinity)) { // nothing is known of it
         if (job.slot) {
@@ -191,7 +197,8 @@ template <std::size_t L> void evaluate_leaf(const LeafInput& in, const LeafJob& 
                 for (std::size_t s = 0; s < 4; ++s)
                     sum[r][s] = fused(w, hn::Set(d, map[4 * r + s]), sum[r][s]);
         }
-        const auto x = hn::Load(d, value + first), y = hn::Load(d, value + L + first), z = hn::Load(d, value + 2 * L + first);
+        const auto x = hn::Load(d, value + first), y = hn::Load(d, value + L + first),
+                   z = hn::Load(d, value + 2 * L + first);
 #pragma GCC unroll 3
         for (std::size_t r = 0; r < 3; ++r)
             p[r].v[i] = fused(sum[r][0], x, fused(sum[r][1], y, fused(sum[r][2], z, sum[r][3])));
@@ -219,9 +226,15 @@ void evaluate_list(const LeafInput& in, std::span<const LeafJob> jobs, float* ma
         if (i + 2 < jobs.size())
             prefetch(in, jobs[i + 2]);
         switch (in.lanes) {
-        case 4: evaluate_leaf<4>(in, jobs[i], maps); break;
-        case 8: evaluate_leaf<8>(in, jobs[i], maps); break;
-        default: evaluate_leaf<16>(in, jobs[i], maps); break;
+        case 4:
+            evaluate_leaf<4>(in, jobs[i], maps);
+            break;
+        case 8:
+            evaluate_leaf<8>(in, jobs[i], maps);
+            break;
+        default:
+            evaluate_leaf<16>(in, jobs[i], maps);
+            break;
         }
     }
 }

@@ -20,7 +20,8 @@ HWY_BEFORE_NAMESPACE();
 namespace cinch::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// L floats, one per vertex or triangle of a leaf, as however many vectors the target needs. The same lane by lane everywhere.
+/// L floats, one per vertex or triangle of a leaf, as however many vectors the target needs. The same lane by lane
+/// everywhere.
 template <std::size_t L> struct Wide {
     using D = hn::CappedTag<float, L>;
     using V = hn::Vec<D>;
@@ -82,13 +83,34 @@ template <std::size_t L, class F> HWY_INLINE Wide<L> each(const Wide<L>& a, cons
         x.v[i] = f(a.v[i], b.v[i]);
     return x;
 }
-template <std::size_t L> HWY_INLINE Wide<L> operator+(const Wide<L>& a, const Wide<L>& b) { return each(a, b, [](auto x, auto y) { return hn::Add(x, y); }); }
-template <std::size_t L> HWY_INLINE Wide<L> operator-(const Wide<L>& a, const Wide<L>& b) { return each(a, b, [](auto x, auto y) { return hn::Sub(x, y); }); }
-template <std::size_t L> HWY_INLINE Wide<L> operator*(const Wide<L>& a, const Wide<L>& b) { return each(a, b, [](auto x, auto y) { return hn::Mul(x, y); }); }
-template <std::size_t L> HWY_INLINE Wide<L> magnitude(const Wide<L>& a) { return each(a, [](auto x) { return hn::Abs(x); }); }
-template <std::size_t L> HWY_INLINE Wide<L> root(const Wide<L>& a) { return each(a, [](auto x) { return hn::Sqrt(x); }); }
-template <std::size_t L> HWY_INLINE Wide<L> greater(const Wide<L>& a, const Wide<L>& b) { return each(a, b, [](auto x, auto y) { return hn::Max(x, y); }); }
-template <std::size_t L> HWY_INLINE Wide<L> less(const Wide<L>& a, const Wide<L>& b) { return each(a, b, [](auto x, auto y) { return hn::Min(x, y); }); }
+template <std::size_t L> HWY_INLINE Wide<L> operator+(const Wide<L>& a, const Wide<L>& b)
+{
+    return each(a, b, [](auto x, auto y) { return hn::Add(x, y); });
+}
+template <std::size_t L> HWY_INLINE Wide<L> operator-(const Wide<L>& a, const Wide<L>& b)
+{
+    return each(a, b, [](auto x, auto y) { return hn::Sub(x, y); });
+}
+template <std::size_t L> HWY_INLINE Wide<L> operator*(const Wide<L>& a, const Wide<L>& b)
+{
+    return each(a, b, [](auto x, auto y) { return hn::Mul(x, y); });
+}
+template <std::size_t L> HWY_INLINE Wide<L> magnitude(const Wide<L>& a)
+{
+    return each(a, [](auto x) { return hn::Abs(x); });
+}
+template <std::size_t L> HWY_INLINE Wide<L> root(const Wide<L>& a)
+{
+    return each(a, [](auto x) { return hn::Sqrt(x); });
+}
+template <std::size_t L> HWY_INLINE Wide<L> greater(const Wide<L>& a, const Wide<L>& b)
+{
+    return each(a, b, [](auto x, auto y) { return hn::Max(x, y); });
+}
+template <std::size_t L> HWY_INLINE Wide<L> less(const Wide<L>& a, const Wide<L>& b)
+{
+    return each(a, b, [](auto x, auto y) { return hn::Min(x, y); });
+}
 
 /// a·b + c, rounded once: part of the definition of every result.
 template <std::size_t L> HWY_INLINE Wide<L> fma(const Wide<L>& a, const Wide<L>& b, const Wide<L>& c)
@@ -98,7 +120,8 @@ template <std::size_t L> HWY_INLINE Wide<L> fma(const Wide<L>& a, const Wide<L>&
 #if HWY_NATIVE_FMA
         x.v[i] = hn::MulAdd(a.v[i], b.v[i], c.v[i]);
 #else // the emulation would round twice
-        x.v[i] = hn::Set(typename Wide<L>::D(), std::fma(hn::GetLane(a.v[i]), hn::GetLane(b.v[i]), hn::GetLane(c.v[i])));
+        x.v[i] =
+            hn::Set(typename Wide<L>::D(), std::fma(hn::GetLane(a.v[i]), hn::GetLane(b.v[i]), hn::GetLane(c.v[i])));
     static_assert(Wide<L>::width == 1);
 #endif
     return x;
@@ -111,7 +134,8 @@ template <std::size_t L> HWY_INLINE Wide<L> fms(const Wide<L>& a, const Wide<L>&
 #if HWY_NATIVE_FMA
         x.v[i] = hn::MulSub(a.v[i], b.v[i], c.v[i]);
 #else
-        x.v[i] = hn::Set(typename Wide<L>::D(), std::fma(hn::GetLane(a.v[i]), hn::GetLane(b.v[i]), -hn::GetLane(c.v[i])));
+        x.v[i] =
+            hn::Set(typename Wide<L>::D(), std::fma(hn::GetLane(a.v[i]), hn::GetLane(b.v[i]), -hn::GetLane(c.v[i])));
 #endif
     return x;
 }
@@ -153,7 +177,10 @@ template <std::size_t L> HWY_INLINE Lanes<L> operator|(const Lanes<L>& a, const 
     return x;
 }
 /// Bit i: whether a > b in lane i; false for NaN.
-template <std::size_t L> HWY_INLINE std::uint32_t bits_where_greater(const Wide<L>& a, const Wide<L>& b) { return (a > b).bits(); }
+template <std::size_t L> HWY_INLINE std::uint32_t bits_where_greater(const Wide<L>& a, const Wide<L>& b)
+{
+    return (a > b).bits();
+}
 
 /// succ of rounding.hpp.
 template <std::size_t L> HWY_INLINE Wide<L> next(const Wide<L>& x)
@@ -197,7 +224,8 @@ template <std::size_t L> HWY_INLINE Wide<L> lookup(const Wide<L>& table, const s
             const auto low = hn::IndicesFromVec(D(), hn::And(place, hn::Set(di, 7)));
             out.v[i] = hn::TableLookupLanes(table.v[0], low);
             if constexpr (L == 16)
-                out.v[i] = hn::IfThenElse(hn::RebindMask(D(), hn::Gt(place, hn::Set(di, 7))), hn::TableLookupLanes(table.v[1], low), out.v[i]);
+                out.v[i] = hn::IfThenElse(hn::RebindMask(D(), hn::Gt(place, hn::Set(di, 7))),
+                                          hn::TableLookupLanes(table.v[1], low), out.v[i]);
         }
         return out;
     }
@@ -210,7 +238,8 @@ template <std::size_t L> HWY_INLINE Wide<L> lookup(const Wide<L>& table, const s
 }
 
 /// out[n] = table[index[n]], of L bytes each.
-template <std::size_t L> HWY_INLINE void lookup_bytes(const std::uint8_t* table, const std::uint8_t* index, std::uint8_t* out)
+template <std::size_t L>
+HWY_INLINE void lookup_bytes(const std::uint8_t* table, const std::uint8_t* index, std::uint8_t* out)
 {
 #if HWY_TARGET != HWY_SCALAR
     const hn::FixedTag<std::uint8_t, L> d;
@@ -221,7 +250,8 @@ template <std::size_t L> HWY_INLINE void lookup_bytes(const std::uint8_t* table,
 #endif
 }
 
-/// The places of the bits that are set, in order, to `out`; up to L bytes more are overwritten. Without branches where lanes can be compressed.
+/// The places of the bits that are set, in order, to `out`; up to L bytes more are overwritten. Without branches where
+/// lanes can be compressed.
 template <std::size_t L> HWY_INLINE void list_bits(std::uint32_t bits, std::uint8_t* out)
 {
 #if HWY_TARGET != HWY_SCALAR
@@ -229,7 +259,8 @@ template <std::size_t L> HWY_INLINE void list_bits(std::uint32_t bits, std::uint
         const hn::RebindToSigned<typename Wide<L>::D> d;
         const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(bits), static_cast<std::uint8_t>(bits >> 8)};
         const auto places = hn::Compress(hn::Iota(d, 0), hn::LoadMaskBits(d, bytes));
-        return hn::StoreU(hn::DemoteTo(hn::Rebind<std::uint8_t, decltype(d)>(), places), hn::Rebind<std::uint8_t, decltype(d)>(), out);
+        return hn::StoreU(hn::DemoteTo(hn::Rebind<std::uint8_t, decltype(d)>(), places),
+                          hn::Rebind<std::uint8_t, decltype(d)>(), out);
     }
 #endif
     for (; bits != 0; bits &= bits - 1)

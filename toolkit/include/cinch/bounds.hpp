@@ -36,7 +36,8 @@ enum class Method : std::uint8_t {
     vertices, ///< the vertices themselves, O(ℓ): the truth
 };
 
-/// The rest data that a method needs of a BVH: boxes of BVs, also one per BV and simulation node, also extreme points and models of weights.
+/// The rest data that a method needs of a BVH: boxes of BVs, also one per BV and simulation node, also extreme points
+/// and models of weights.
 enum class RestNeed : std::uint8_t { boxes, local, points };
 
 /// What the program must know of a method: lists of methods derive from this table.
@@ -61,14 +62,17 @@ inline constexpr std::array method_table = {
     MethodInfo{Method::best, "best", true, false, false, RestNeed::points},
     MethodInfo{Method::vertices, "vertices", false, false, false, RestNeed::boxes},
 };
-static_assert(method_table.back().method == Method::vertices && method_table.size() == static_cast<std::size_t>(Method::vertices) + 1,
+static_assert(method_table.back().method == Method::vertices &&
+                  method_table.size() == static_cast<std::size_t>(Method::vertices) + 1,
               "a row for every method");
-static_assert([] {
-    for (std::size_t i = 0; i < method_table.size(); ++i)
-        if (method_table[i].method != static_cast<Method>(i))
-            return false;
-    return true;
-}(), "rows in the order of the enumeration");
+static_assert(
+    [] {
+        for (std::size_t i = 0; i < method_table.size(); ++i)
+            if (method_table[i].method != static_cast<Method>(i))
+                return false;
+        return true;
+    }(),
+    "rows in the order of the enumeration");
 
 constexpr const MethodInfo& info_of(Method method) { return method_table[static_cast<std::size_t>(method)]; }
 constexpr std::string_view name_of(Method method) { return info_of(method).name; }
@@ -85,8 +89,14 @@ constexpr std::optional<Method> named_method(std::string_view name)
 class Methods {
 public:
     constexpr Methods(Method method) : bits_(bit(method)) {}
-    constexpr Methods operator|(Methods other) const { return Methods(static_cast<std::uint16_t>(bits_ | other.bits_)); }
-    constexpr Methods without(Methods others) const { return Methods(static_cast<std::uint16_t>(bits_ & ~others.bits_)); }
+    constexpr Methods operator|(Methods other) const
+    {
+        return Methods(static_cast<std::uint16_t>(bits_ | other.bits_));
+    }
+    constexpr Methods without(Methods others) const
+    {
+        return Methods(static_cast<std::uint16_t>(bits_ & ~others.bits_));
+    }
     constexpr bool contains(Method method) const { return bits_ & bit(method); }
     /// True if no method is in this set that is not in `other`.
     constexpr bool within(Methods other) const { return (bits_ & ~other.bits_) == 0; }
@@ -128,7 +138,10 @@ public:
 
 private:
     constexpr explicit Methods(std::uint16_t bits) : bits_(bits) {}
-    static constexpr std::uint16_t bit(Method method) { return static_cast<std::uint16_t>(1u << static_cast<unsigned>(method)); }
+    static constexpr std::uint16_t bit(Method method)
+    {
+        return static_cast<std::uint16_t>(1u << static_cast<unsigned>(method));
+    }
     std::uint16_t bits_;
 };
 constexpr Methods operator|(Method a, Method b) { return Methods(a) | b; }
@@ -137,9 +150,12 @@ inline constexpr Methods all_methods = Methods::where([](const MethodInfo&) { re
 inline constexpr Methods kernel_methods = Methods::where([](const MethodInfo& m) { return m.kernel; });
 /// What `best` chooses among.
 inline constexpr Methods chosen_methods = Methods::where([](const MethodInfo& m) { return m.chosen; });
-/// Those that hold for every w ∈ W' over the BV's own rest box, and of these the ones with kernels, each at least as tight as the one before it.
-inline constexpr Methods box_methods = Methods::where([](const MethodInfo& m) { return m.weight_space && m.need == RestNeed::boxes; });
-inline constexpr Methods ladder_methods = Methods::where([](const MethodInfo& m) { return m.weight_space && m.need == RestNeed::boxes && m.kernel; });
+/// Those that hold for every w ∈ W' over the BV's own rest box, and of these the ones with kernels, each at least as
+/// tight as the one before it.
+inline constexpr Methods box_methods =
+    Methods::where([](const MethodInfo& m) { return m.weight_space && m.need == RestNeed::boxes; });
+inline constexpr Methods ladder_methods =
+    Methods::where([](const MethodInfo& m) { return m.weight_space && m.need == RestNeed::boxes && m.kernel; });
 /// Those that hold for every w ∈ W' over whatever boxes.
 inline constexpr Methods weight_space_methods = Methods::where([](const MethodInfo& m) { return m.weight_space; });
 
@@ -228,7 +244,8 @@ inline std::string kdop_names()
     return names;
 }
 
-/// The k/2 axes of a k-DOP; the faces (AABB) come first. A bound has k supports: place 2a is max axis·v, place 2a + 1 is max −axis·v.
+/// The k/2 axes of a k-DOP; the faces (AABB) come first. A bound has k supports: place 2a is max axis·v, place 2a + 1
+/// is max −axis·v.
 inline std::span<const Axis> axes_of(int k)
 {
     if (k == 18)
@@ -239,9 +256,12 @@ inline std::span<const Axis> axes_of(int k)
 /// Calls f.operator()<number of axes>() for a k-DOP. Throws std::invalid_argument for a k that is none.
 template <class F> void with_axes(int k, F&& f)
 {
-    const bool found = [&]<std::size_t... i>(std::index_sequence<i...>) {
-        return ((k == kdops[i] ? (f.template operator()<static_cast<std::size_t>(kdops[i] / 2)>(), true) : false) || ...);
-    }(std::make_index_sequence<kdops.size()>());
+    const bool found = [&]<std::size_t... i>(std::index_sequence<i...>)
+    {
+        return ((k == kdops[i] ? (f.template operator()<static_cast<std::size_t>(kdops[i] / 2)>(), true) : false) ||
+                ...);
+    }
+    (std::make_index_sequence<kdops.size()>());
     if (!found)
         throw std::invalid_argument("k must be " + kdop_names());
 }
@@ -250,8 +270,8 @@ template <class F> void with_axes(int k, F&& f)
 /// comes, which falls below the exact value about every fourth time; it exists to measure what the proof costs.
 enum class Rounding { proven, plain };
 
-/// The arithmetic of the kernels. Both give proven bounds; float's are looser by a few 1e-6 of the surface's extent. Where a BV has
-/// more simulation nodes than float takes (most_nodes_in_float), double is used throughout.
+/// The arithmetic of the kernels. Both give proven bounds; float's are looser by a few 1e-6 of the surface's extent.
+/// Where a BV has more simulation nodes than float takes (most_nodes_in_float), double is used throughout.
 enum class Precision { float32, float64 };
 
 /// "float" or "double".
@@ -263,12 +283,15 @@ enum class RestShape : std::uint8_t { aabb, obb };
 /// A closed axis-aligned box; none if lower > upper on any axis.
 struct Aabb {
     Vec3 lower, upper;
-    bool contains(const Vec3& p) const { return (p.array() >= lower.array()).all() && (p.array() <= upper.array()).all(); }
+    bool contains(const Vec3& p) const
+    {
+        return (p.array() >= lower.array()).all() && (p.array() <= upper.array()).all();
+    }
     bool operator==(const Aabb&) const = default;
 };
 
-/// A k-DOP: for every axis a of axes_of(k) the slab against(a) ≤ a·x ≤ along(a). Stored as supports are everywhere: place 2a is the
-/// greatest a·x, place 2a + 1 the greatest −a·x.
+/// A k-DOP: for every axis a of axes_of(k) the slab against(a) ≤ a·x ≤ along(a). Stored as supports are everywhere:
+/// place 2a is the greatest a·x, place 2a + 1 the greatest −a·x.
 class Dop {
 public:
     /// From the supports of one BV, k of them. Throws std::invalid_argument for a k that is none.

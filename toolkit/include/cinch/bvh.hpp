@@ -22,14 +22,15 @@ struct RestBox {
     Vec3 centre = Vec3::Zero(), half = Vec3::Zero();
 };
 
-/// The real parallelepiped centre + Σ β_i axis_i, |β_i| ≤ 1, contains its vertices. Its axes are nearly orthogonal: an OBB.
+/// The real parallelepiped centre + Σ β_i axis_i, |β_i| ≤ 1, contains its vertices. Its axes are nearly orthogonal: an
+/// OBB.
 struct OrientedBox {
     Vec3 centre = Vec3::Zero();
     Vec3 axis[3] = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
 };
 
-/// w_j ≈ mean + gradient·y over a BV's vertices, y = x − pivot. Exactly, for every vertex: |w_j − mean − gradient·y| ≤ residual
-/// and |(w_j − mean) y_i| ≤ moment_i. The means of a BV are multiples of 2^-53 that sum to exactly 1.
+/// w_j ≈ mean + gradient·y over a BV's vertices, y = x − pivot. Exactly, for every vertex: |w_j − mean − gradient·y| ≤
+/// residual and |(w_j − mean) y_i| ≤ moment_i. The means of a BV are multiples of 2^-53 that sum to exactly 1.
 struct WeightModel {
     double mean = 0;
     Vec3 gradient = Vec3::Zero();
@@ -40,15 +41,16 @@ struct WeightModel {
 /// What one BV knows of its vertices in rest state. A view; owns nothing.
 struct RestBv {
     RestBox box;
-    std::span<const std::uint32_t> node;   ///< simulation nodes that influence it
-    WeightSpace space;                     ///< parallel to `node`
-    std::span<const RestBox> local;        ///< parallel to `node`: holds the vertices that the simulation node influences,
-    std::span<const double> radius;        ///< and so does the ball of this radius about the box's centre
-    Vec3 pivot = Vec3::Zero();             ///< origin of y in the weight model and of the points
-    std::span<const WeightModel> model;    ///< parallel to `node`
-    std::span<const std::uint32_t> point;  ///< extreme vertices: max q·x over all vertices is at most that over these + slack·‖q‖
+    std::span<const std::uint32_t> node; ///< simulation nodes that influence it
+    WeightSpace space;                   ///< parallel to `node`
+    std::span<const RestBox> local;     ///< parallel to `node`: holds the vertices that the simulation node influences,
+    std::span<const double> radius;     ///< and so does the ball of this radius about the box's centre
+    Vec3 pivot = Vec3::Zero();          ///< origin of y in the weight model and of the points
+    std::span<const WeightModel> model; ///< parallel to `node`
+    std::span<const std::uint32_t>
+        point; ///< extreme vertices: max q·x over all vertices is at most that over these + slack·‖q‖
     double slack = 0;
-    std::uint32_t vertex_influences = 0;   ///< most simulation nodes of any one of its vertices
+    std::uint32_t vertex_influences = 0; ///< most simulation nodes of any one of its vertices
 };
 
 /// Most triangles, and most different vertices, of a cluster. At least 1 and 3.
@@ -63,10 +65,10 @@ struct Bv {
     Vec3 pivot = Vec3::Zero();                            ///< mean of the rest vertices, see WeightModel
     double slack = 0;                                     ///< see RestBv::point
     std::uint32_t first_triangle = 0, triangle_count = 0; ///< in Bvh::triangle
-    std::uint32_t first_child = 0;      ///< the other child is first_child + 1; 0 for a leaf (the root is nobody's child)
+    std::uint32_t first_child = 0; ///< the other child is first_child + 1; 0 for a leaf (the root is nobody's child)
     std::uint32_t first_influence = 0, influence_count = 0; ///< in Bvh::node, l, h, local, radius, model
-    std::uint32_t first_point = 0, point_count = 0;       ///< in Bvh::point
-    std::uint32_t vertex_influences = 0; ///< most simulation nodes of any one of its vertices
+    std::uint32_t first_point = 0, point_count = 0;         ///< in Bvh::point
+    std::uint32_t vertex_influences = 0;                    ///< most simulation nodes of any one of its vertices
 
     bool is_leaf() const { return first_child == 0; }
 };
@@ -74,42 +76,56 @@ struct Bv {
 /// How much of the rest data is prepared; it takes most of the time.
 enum class RestDetail : std::uint8_t {
     boxes, ///< what convex, corners, eq12 and limited need: boxes and weight intervals
-    inner, ///< everything but the extreme points of the leaves: enough for queries, whose leaves come from their vertices
+    inner, ///< everything but the extreme points of the leaves: enough for queries, whose leaves come from their
+           ///< vertices
     all,
 };
 
-/// A binary tree of BVs over a surface, in flat arrays. BVs stand level by level, the root first, children after parents.
+/// A binary tree of BVs over a surface, in flat arrays. BVs stand level by level, the root first, children after
+/// parents.
 struct Bvh {
     RestDetail detail = RestDetail::all;
     std::vector<Bv> bvs;                 ///< empty for a mesh without triangles
     std::vector<std::uint32_t> level;    ///< level i is BVs [level[i], level[i+1]); the last entry is bvs.size()
     std::vector<std::uint32_t> triangle; ///< a permutation of the mesh's triangles
-    std::vector<std::uint32_t> node;     ///< per BV ascending: every simulation node that influences any of its vertices
-    std::vector<double> l, h;            ///< per entry of `node` the least and greatest weight over the BV's vertices
-    std::vector<RestBox> local;          ///< per entry of `node` a box around the BV's vertices that it influences
-    std::vector<double> radius;          ///< per entry of `node` of a ball about that box's centre around these vertices
-    std::vector<WeightModel> model;      ///< per entry of `node`
-    std::vector<std::uint32_t> point;    ///< extreme vertices of the BVs
+    std::vector<std::uint32_t> node;  ///< per BV ascending: every simulation node that influences any of its vertices
+    std::vector<double> l, h;         ///< per entry of `node` the least and greatest weight over the BV's vertices
+    std::vector<RestBox> local;       ///< per entry of `node` a box around the BV's vertices that it influences
+    std::vector<double> radius;       ///< per entry of `node` of a ball about that box's centre around these vertices
+    std::vector<WeightModel> model;   ///< per entry of `node`
+    std::vector<std::uint32_t> point; ///< extreme vertices of the BVs
 
     std::size_t bytes() const
     {
         auto size = [](const auto& all) { return all.size() * sizeof(all[0]); };
-        return size(bvs) + size(level) + size(triangle) + size(node) + size(l) + size(h) + size(local) + size(radius) + size(model) + size(point);
+        return size(bvs) + size(level) + size(triangle) + size(node) + size(l) + size(h) + size(local) + size(radius) +
+               size(model) + size(point);
     }
     RestBv rest(std::size_t bv) const
     {
         const Bv& b = bvs[bv];
-        auto mine = [&](const auto& all) { return all.empty() ? std::span(all) : std::span(all).subspan(b.first_influence, b.influence_count); };
-        return {b.box, mine(node), {mine(l), mine(h)}, mine(local), mine(radius), b.pivot, mine(model),
-                std::span(point).subspan(b.first_point, b.point_count), b.slack, b.vertex_influences};
+        auto mine = [&](const auto& all) {
+            return all.empty() ? std::span(all) : std::span(all).subspan(b.first_influence, b.influence_count);
+        };
+        return {b.box,
+                mine(node),
+                {mine(l), mine(h)},
+                mine(local),
+                mine(radius),
+                b.pivot,
+                mine(model),
+                std::span(point).subspan(b.first_point, b.point_count),
+                b.slack,
+                b.vertex_influences};
     }
 };
 
-/// Median split along the longest axis of the covariance of the triangles' centroids, down to at most `leaf_triangles` ≥ 1 per
-/// leaf; ties are split by index, so the depth is logarithmic whatever the geometry. Deterministic.
+/// Median split along the longest axis of the covariance of the triangles' centroids, down to at most `leaf_triangles`
+/// ≥ 1 per leaf; ties are split by index, so the depth is logarithmic whatever the geometry. Deterministic.
 Bvh build_bvh(const DeformableSurface& surface, std::size_t leaf_triangles, RestDetail detail = RestDetail::all);
 
-/// The same split over clusters of triangles, each of which becomes a leaf: fewer and fuller leaves, each a patch of the surface.
+/// The same split over clusters of triangles, each of which becomes a leaf: fewer and fuller leaves, each a patch of
+/// the surface.
 Bvh build_bvh(const DeformableSurface& surface, ClusterSize leaf, RestDetail detail = RestDetail::all);
 
 /// The vertices of one BV's triangles, each once, in order of first use.

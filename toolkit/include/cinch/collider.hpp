@@ -36,7 +36,8 @@ struct LazyOptions {
 /// A body's motion in a frame.
 struct BodyFrame {
     std::span<const AffineMap> maps;   ///< one per simulation node
-    std::span<const Vec3> positions{}; ///< of all vertices, where they are there anyway: then these are the vertices, and the update is full
+    std::span<const Vec3> positions{}; ///< of all vertices, where they are there anyway: then these are the vertices,
+                                       ///< and the update is full
 };
 
 /// What a frame took.
@@ -57,7 +58,8 @@ struct TrianglePair {
 enum class Query : std::uint8_t {
     pairs,  ///< all intersecting pairs of triangles
     any,    ///< whether there is one; stops at the first it finds
-    leaves, ///< pairs of leaves whose k-DOPs overlap, each given by its first triangle: the least effort, no triangle is tested
+    leaves, ///< pairs of leaves whose k-DOPs overlap, each given by its first triangle: the least effort, no triangle
+            ///< is tested
 };
 
 /// What a query did.
@@ -73,10 +75,11 @@ struct QueryCounts {
 /// A body of a collider: 0, 1, 2, ... in the order of add(), never given twice.
 using BodyId = std::uint32_t;
 
-/// Finds the intersecting triangles of several deforming bodies, frame after frame: a sweep over the roots, then all pairs of trees level by
-/// level, each level's BVs brought up to date together, then the leaves. A pair is one if the closed triangles whose vertices are those
-/// of evaluate_vertex have a point in common, exactly. The list and its order are the same for every method, k, history, update and
-/// number of threads; the order is that of the trees. One collider is used by one thread at a time.
+/// Finds the intersecting triangles of several deforming bodies, frame after frame: a sweep over the roots, then all
+/// pairs of trees level by level, each level's BVs brought up to date together, then the leaves. A pair is one if the
+/// closed triangles whose vertices are those of evaluate_vertex have a point in common, exactly. The list and its order
+/// are the same for every method, k, history, update and number of threads; the order is that of the trees. One
+/// collider is used by one thread at a time.
 class Collider {
 public:
     /// What bodies have that are added without options of their own.
@@ -85,15 +88,16 @@ public:
     Collider(Collider&&) noexcept;
     Collider& operator=(Collider&&) noexcept;
 
-    /// Adds a body; builds its tree, with the leaf size and rest data that queries want. The surface must stay as it is, and alive. Queries
-    /// need a new update() then. Throws std::invalid_argument for options that do not fit those of the collider: kdop, lanes and
-    /// keep_cut are the same for all.
+    /// Adds a body; builds its tree, with the leaf size and rest data that queries want. The surface must stay as it
+    /// is, and alive. Queries need a new update() then. Throws std::invalid_argument for options that do not fit those
+    /// of the collider: kdop, lanes and keep_cut are the same for all.
     BodyId add(const DeformableSurface& surface);
     BodyId add(const DeformableSurface& surface, const LazyOptions& own);
     BodyId add(const DeformableSurface&& surface) = delete; ///< it is referred to
     BodyId add(const DeformableSurface&& surface, const LazyOptions& own) = delete;
-    /// The same with a tree that is there, whose leaves have at most options.lanes triangles and vertices. It must stay alive for methods
-    /// without kernels (sphere, corners, vertices), unless it is moved in: then it is kept if it is needed.
+    /// The same with a tree that is there, whose leaves have at most options.lanes triangles and vertices. It must stay
+    /// alive for methods without kernels (sphere, corners, vertices), unless it is moved in: then it is kept if it is
+    /// needed.
     BodyId add(const Bvh& bvh, const DeformableSurface& surface);
     BodyId add(Bvh&& bvh, const DeformableSurface& surface);
     BodyId add(const Bvh& bvh, const DeformableSurface& surface, const LazyOptions& own);
@@ -104,28 +108,31 @@ public:
     BodyId add(const Bvh&& bvh, const DeformableSurface& surface, const LazyOptions& own) = delete;
     BodyId add(const Bvh& bvh, const DeformableSurface&& surface, const LazyOptions& own) = delete;
 
-    /// Takes a body away; the others keep their ids. Queries need a new update() then. Throws std::invalid_argument for an id that is none.
+    /// Takes a body away; the others keep their ids. Queries need a new update() then. Throws std::invalid_argument for
+    /// an id that is none.
     void remove(BodyId body);
     /// Ascending: update() takes a frame for each, in this order.
     std::span<const BodyId> bodies() const;
 
-    /// Pairs of bodies a < b that queries leave out: where `wanted` is there and says false. Asked by the thread that queries, of bodies whose
-    /// roots may overlap; it must always say the same within a frame.
+    /// Pairs of bodies a < b that queries leave out: where `wanted` is there and says false. Asked by the thread that
+    /// queries, of bodies whose roots may overlap; it must always say the same within a frame.
     void set_filter(std::function<bool(BodyId a, BodyId b)> wanted);
 
-    /// Begins a frame, one per body; what it points to must stay alive until after the query. Throws std::invalid_argument for sizes that do
-    /// not fit, std::runtime_error for a changed floating-point environment; whatever it throws, there is no frame then.
+    /// Begins a frame, one per body; what it points to must stay alive until after the query. Throws
+    /// std::invalid_argument for sizes that do not fit, std::runtime_error for a changed floating-point environment;
+    /// whatever it throws, there is no frame then.
     void update(std::span<const BodyFrame> frames);
 
-    /// Queries the frame. `sink` gets the pairs in order, piece by piece, and says whether to go on. True if there are any. These and unknown()
-    /// throw std::logic_error if there is no frame: before the first update(), after one that threw, after add() and after remove().
+    /// Queries the frame. `sink` gets the pairs in order, piece by piece, and says whether to go on. True if there are
+    /// any. These and unknown() throw std::logic_error if there is no frame: before the first update(), after one that
+    /// threw, after add() and after remove().
     using Sink = std::function<bool(std::span<const TrianglePair>)>;
     bool find(Query query, const Sink& sink);
     std::vector<TrianglePair> pairs();
     bool any();
 
-    /// Bodies of which nothing is known in this frame: a transform that has weight is not finite, or so large that vertices may not be. They
-    /// are to be taken as overlapping everything, and are in no pair.
+    /// Bodies of which nothing is known in this frame: a transform that has weight is not finite, or so large that
+    /// vertices may not be. They are to be taken as overlapping everything, and are in no pair.
     const std::vector<BodyId>& unknown() const;
     const QueryCounts& counts() const; ///< of the frame so far
     std::size_t bytes() const;         ///< of everything but the surfaces and BVHs that were not moved in

@@ -2,7 +2,8 @@
 #pragma once
 
 /// \file
-/// Files: meshes (OBJ, OFF, PLY, STL), characters (glTF 2.0), weights and transforms as text. Their faults are an InputError.
+/// Files: meshes (OBJ, OFF, PLY, STL), characters (glTF 2.0), weights and transforms as text. Their faults are an
+/// InputError.
 
 #include <array>
 #include <cstdint>
@@ -17,15 +18,16 @@ namespace cinch {
 /// The surface of a mesh file, and what else the file has.
 struct MeshFile {
     TriangleMesh mesh;
-    std::vector<std::string> notes; ///< one line each, for the load report: what bounds nothing and was left out, what was not read
+    std::vector<std::string>
+        notes; ///< one line each, for the load report: what bounds nothing and was left out, what was not read
 };
 
 /// Reads OBJ, OFF, PLY (ascii and both binaries) or STL (ascii and binary), chosen by the extension in any case.
-/// Polygons become triangle fans, PLY's strips the triangles that they stand for; vertex counts are those of the file (an STL file has
-/// three per triangle). What is no surface is left out, and a note counts it: lines, points, faces of two vertices, and where
-/// the file gives the count itself (PLY, OFF) of one or none.
-/// Throws InputError, one line with file, line or byte, and reason: truncation, bad indices, coordinates that are
-/// not finite, counts that the file cannot hold, surfaces of other kinds. Memory is bounded by the file's size.
+/// Polygons become triangle fans, PLY's strips the triangles that they stand for; vertex counts are those of the file
+/// (an STL file has three per triangle). What is no surface is left out, and a note counts it: lines, points, faces of
+/// two vertices, and where the file gives the count itself (PLY, OFF) of one or none. Throws InputError, one line with
+/// file, line or byte, and reason: truncation, bad indices, coordinates that are not finite, counts that the file
+/// cannot hold, surfaces of other kinds. Memory is bounded by the file's size.
 MeshFile read_mesh(const std::filesystem::path& path);
 
 /// True if the extension is one that read_mesh knows.
@@ -80,7 +82,7 @@ struct Character {
     std::vector<Joint> joints;
     std::vector<Bone> bones; ///< joints and what moves them; parents come first
     struct Animation {
-        std::string name; ///< unique, printable; "anim0", "anim1", ... where the file gives none
+        std::string name;               ///< unique, printable; "anim0", "anim1", ... where the file gives none
         double first_s = 0, last_s = 0; ///< from the first key to the last of all of its channels, whatever they move
         std::vector<Curve> curves;
         std::vector<std::string> missing; ///< what moves the surface in it and is not modelled

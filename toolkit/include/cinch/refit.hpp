@@ -15,20 +15,21 @@ struct RefitOptions {
     Methods methods = Method::best; ///< several are intersected
     int kdop = 6;                   ///< 6, 14, 18 or 26
     Rounding rounding = Rounding::proven;
-    Precision precision = Precision::float32; ///< of the methods that have kernels: all but sphere, corners and vertices
-    int passes = 1;                 ///< evaluations of D for local, support and best
+    Precision precision =
+        Precision::float32;                 ///< of the methods that have kernels: all but sphere, corners and vertices
+    int passes = 1;                         ///< evaluations of D for local, support and best
     RestShape rest_shape = RestShape::aabb; ///< for convex, eq12 and limited
-    bool remember = false;          ///< λ of local, support and best begins where the last frame left it
+    bool remember = false;                  ///< λ of local, support and best begins where the last frame left it
 };
 
 struct RefitReport {
-    std::size_t unbounded_nodes = 0; ///< simulation nodes whose transform is not finite, or too large for the arithmetic of the methods
-                                     ///< that have kernels
+    std::size_t unbounded_nodes = 0; ///< simulation nodes whose transform is not finite, or too large for the
+                                     ///< arithmetic of the methods that have kernels
     std::size_t infinite = 0;        ///< supports that are +∞ for whatever reason
 };
 
-/// Bounds every BV of one surface, frame after frame. All but `vertices` cost O(n) per BV (`corners` O(n²)) and do not touch the
-/// vertices. Surface and BVH must stay as they are, and alive.
+/// Bounds every BV of one surface, frame after frame. All but `vertices` cost O(n) per BV (`corners` O(n²)) and do not
+/// touch the vertices. Surface and BVH must stay as they are, and alive.
 class Refitter {
 public:
     /// Prepares the rest data that the methods need. Throws std::invalid_argument for a k that is none.
@@ -38,10 +39,11 @@ public:
     ~Refitter();
     Refitter(Refitter&&) noexcept;
 
-    /// supports[bv·k + d], d as in axes_of(k). In parallel over BVs; the same bits for every thread count and every target. A transform
-    /// that is not finite, in whatever entry, makes all supports of the BVs that its simulation node influences infinite, and changes no other; or, on a
-    /// surface far from the origin of coordinates, others by rounding at most, should the grid cell of the median node change.
-    /// Throws std::invalid_argument for sizes that do not fit and std::runtime_error for a changed floating-point environment.
+    /// supports[bv·k + d], d as in axes_of(k). In parallel over BVs; the same bits for every thread count and every
+    /// target. A transform that is not finite, in whatever entry, makes all supports of the BVs that its simulation
+    /// node influences infinite, and changes no other; or, on a surface far from the origin of coordinates, others by
+    /// rounding at most, should the grid cell of the median node change. Throws std::invalid_argument for sizes that do
+    /// not fit and std::runtime_error for a changed floating-point environment.
     RefitReport operator()(std::span<const AffineMap> maps, std::span<double> supports);
 
     /// Of the rest data that the kernels stream.
@@ -53,7 +55,7 @@ private:
 };
 
 /// A single frame: prepares everything anew.
-RefitReport refit(const Bvh& bvh, const DeformableSurface& surface, std::span<const AffineMap> maps, const RefitOptions& options,
-                  std::span<double> supports);
+RefitReport refit(const Bvh& bvh, const DeformableSurface& surface, std::span<const AffineMap> maps,
+                  const RefitOptions& options, std::span<double> supports);
 
 } // namespace cinch

@@ -53,8 +53,8 @@ public:
     std::size_t frame() const; ///< 0 at the start
     std::size_t frame_count() const;
     double time_s() const;
-    /// To the next frame. The same bits for any number of threads. Throws std::runtime_error with time, body and reason for a step that
-    /// cannot be solved; the state is that before it then.
+    /// To the next frame. The same bits for any number of threads. Throws std::runtime_error with time, body and reason
+    /// for a step that cannot be solved; the state is that before it then.
     void advance();
     /// One map per simulation node, at present: what moves the surface.
     std::vector<AffineMap> transforms(std::size_t body) const;

@@ -87,8 +87,8 @@ void BodyContact::add_diagonal(const Configuration& at, std::vector<Mat3>& block
     }
 }
 
-/// ω Δt ≤ 1, ω² = k / m by rows: shares and weights sum to 1, and the 4 is for what acts through J. The stiffness that the explicit
-/// integrator looks at now and then may be of other contacts.
+/// ω Δt ≤ 1, ω² = k / m by rows: shares and weights sum to 1, and the 4 is for what acts through J. The stiffness that
+/// the explicit integrator looks at now and then may be of other contacts.
 double BodyContact::longest_step(const Configuration& at) const
 {
     std::vector<double> load(at.body.size(), 0);

@@ -11,13 +11,14 @@ namespace cinch {
 /// A point of a body's surface, Σ_c share_c v_c over the corners of a triangle, that belongs in front of a plane.
 struct Contact {
     std::array<std::uint32_t, 3> corner{};
-    std::array<double, 3> share{}; ///< ≥ 0, sum 1
+    std::array<double, 3> share{};  ///< ≥ 0, sum 1
     std::array<double, 3> normal{}; ///< of length 1
-    double offset = 0;             ///< the plane is normal·x = offset, m, seen from the origin given with it
-    double stiffness = 0;          ///< k, N/m
+    double offset = 0;              ///< the plane is normal·x = offset, m, seen from the origin given with it
+    double stiffness = 0;           ///< k, N/m
 };
 
-/// Planes that push points of one body back: ½ k d² at depth d behind. ContactSearch finds them anew before every frame.
+/// Planes that push points of one body back: ½ k d² at depth d behind. ContactSearch finds them anew before every
+/// frame.
 class BodyContact final : public Effect {
 public:
     BodyContact() : Effect("contact") {}
@@ -42,7 +43,7 @@ public:
 
 private:
     std::vector<Contact> contacts_;
-    Vec3 origin_ = Vec3::Zero();          ///< of the world's, m
+    Vec3 origin_ = Vec3::Zero();        ///< of the world's, m
     std::vector<std::size_t> touching_; ///< in the configuration of prepare_product
 };
 

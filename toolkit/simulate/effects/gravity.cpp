@@ -8,8 +8,8 @@ class Gravity : public Effect {
 public:
     explicit Gravity(const Vec3& acceleration) : Effect("gravity"), acceleration_(acceleration) {}
 
-    // Of displacements, and of the reference as a whole: what a step compares are displacements, and their energy is not to drown in that
-    // of where they are.
+    // Of displacements, and of the reference as a whole: what a step compares are displacements, and their energy is
+    // not to drown in that of where they are.
     double energy(const Configuration& c) const override
     {
         Vec3 moved = Vec3::Zero(), rest = Vec3::Zero();

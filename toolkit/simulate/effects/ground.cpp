@@ -59,7 +59,9 @@ public:
                 touching_.push_back({k, stiffness(c), 0});
             return;
         }
-        each_contact(c, [&](std::size_t k, const Vec3&, double depth) { touching_.push_back({k, depth > 0 ? stiffness(c) : 0, drag(k)}); });
+        each_contact(c, [&](std::size_t k, const Vec3&, double depth) {
+            touching_.push_back({k, depth > 0 ? stiffness(c) : 0, drag(k)});
+        });
     }
     void add_product(const Configuration& given, const Field& dx, const MatrixField& dj, Forces out) const override
     {
@@ -84,8 +86,8 @@ public:
                 block[row.node[e]] += row.weight[e] * row.weight[e] * push;
         }
     }
-    /// As the drag does for an explicit step: force by velocity, c = μ N / speed. By rows: weights sum to 1, and the 4 is for what acts
-    /// through J.
+    /// As the drag does for an explicit step: force by velocity, c = μ N / speed. By rows: weights sum to 1, and the 4
+    /// is for what acts through J.
     void add_damping(const Configuration& given, Curvature out) const override
     {
         const Configuration c = seen(given);
@@ -102,7 +104,8 @@ public:
                 out.block[row.node[e]].diagonal().array() += 4 * row.weight[e] * damping;
         }
     }
-    /// Friction must not turn a slip around: c Δt ≤ m, m the point's share of the mass of its nodes, a quarter for what acts through J.
+    /// Friction must not turn a slip around: c Δt ≤ m, m the point's share of the mass of its nodes, a quarter for what
+    /// acts through J.
     double longest_step(const Configuration& given) const override
     {
         const Configuration c = seen(given);
@@ -126,8 +129,8 @@ public:
                 longest = std::min(longest, c.body.mass[i] / load[i]);
         return longest;
     }
-    /// Friction: a drag μ N / ‖slip of the last step‖ on the slip of this one, by which it reaches Coulomb's force where things slide
-    /// steadily and holds where they rest: below a slow speed.
+    /// Friction: a drag μ N / ‖slip of the last step‖ on the slip of this one, by which it reaches Coulomb's force
+    /// where things slide steadily and holds where they rest: below a slow speed.
     void remember(const Configuration& given, double dt_s) override
     {
         if (ground_.friction == 0)
@@ -152,7 +155,10 @@ public:
         const Vec3 way = way_from(c);
         for (std::size_t k = 0; k < count; ++k)
             if (double& drag = next[4 * k + 3]; drag > 0)
-                drag = before_.empty() ? 0 : ground_.friction * stiffness(c) * drag / std::max(slip(Eigen::Map<const Vec3>(next.data() + 4 * k), k, way).norm(), slow_m_per_s * dt_s);
+                drag = before_.empty() ? 0
+                                       : ground_.friction * stiffness(c) * drag /
+                                             std::max(slip(Eigen::Map<const Vec3>(next.data() + 4 * k), k, way).norm(),
+                                                      slow_m_per_s * dt_s);
         before_ = std::move(next);
         reference_ = c.reference;
     }
@@ -177,8 +183,14 @@ private:
             c.surface = nullptr;
         return c;
     }
-    double depth(const Configuration& c, const Vec3& p) const { return ground_.normal.dot(c.reference.relative(ground_.point) - p); }
-    Vec3 way_from(const Configuration& c) const { return reference_.way_to(c.reference); } ///< from what `before_` refers to
+    double depth(const Configuration& c, const Vec3& p) const
+    {
+        return ground_.normal.dot(c.reference.relative(ground_.point) - p);
+    }
+    Vec3 way_from(const Configuration& c) const
+    {
+        return reference_.way_to(c.reference);
+    } ///< from what `before_` refers to
     // What is below the plane, and what still rubs against it: depth ≥ 0.
     template <class Visit> void each_contact(const Configuration& c, const Visit& visit) const
     {

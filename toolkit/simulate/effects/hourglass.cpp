@@ -4,17 +4,19 @@
 namespace cinch {
 namespace {
 
-// A fit that keeps every direction in which the neighbours extend by more than rounding: unlike the gradient of the stresses,
-// the residual is well conditioned in all of them, and must be 0 at rest.
+// A fit that keeps every direction in which the neighbours extend by more than rounding: unlike the gradient of the
+// stresses, the residual is well conditioned in all of them, and must be 0 at rest.
 constexpr double rounding_only = 1e-12;
 
-// With k_i = α E v_i / Σ_j w_ij ‖x_ij‖² the force on neighbour j is −k_i w_ij (X_j − X_i − G_i x_ij). As w_ij x_ij = M_i d_ij, M_i the
-// moments Σ_j w_ij x_ij x_ijᵀ, that is a spring k_i to the neighbour and a stress k_i G_i M_i, both carried with all other stresses.
-// Of the reference, an affine map of the rest shape, nothing is left in either: displacements stand for positions, D_i for G_i.
+// With k_i = α E v_i / Σ_j w_ij ‖x_ij‖² the force on neighbour j is −k_i w_ij (X_j − X_i − G_i x_ij). As w_ij x_ij =
+// M_i d_ij, M_i the moments Σ_j w_ij x_ij x_ijᵀ, that is a spring k_i to the neighbour and a stress k_i G_i M_i, both
+// carried with all other stresses. Of the reference, an affine map of the rest shape, nothing is left in either:
+// displacements stand for positions, D_i for G_i.
 class Hourglass : public Effect {
 public:
     Hourglass(const MeshlessBody& body, double alpha, double young)
-        : Effect("hourglass"), offset_(4 * body.neighbour.size(), 0), spring_(body.size(), 0), moments_(12 * body.size(), 0), weight_sum_(body.size(), 0)
+        : Effect("hourglass"), offset_(4 * body.neighbour.size(), 0), spring_(body.size(), 0),
+          moments_(12 * body.size(), 0), weight_sum_(body.size(), 0)
     {
         for (std::size_t i = 0, d = 0; i < body.size(); ++i) {
             const std::size_t first = body.row[i], count = body.row[i + 1] - first;
@@ -33,7 +35,8 @@ public:
                 weight_sum_[body.neighbour[first + k]] += stiffness * body.kernel(first + k);
             }
             if (d < body.deficient.size() && body.deficient[d] == i) {
-                flats_.push_back({static_cast<std::uint32_t>(i), offsets, fit_gradient(offsets, weights, rounding_only).d, stiffness * weights});
+                flats_.push_back({static_cast<std::uint32_t>(i), offsets,
+                                  fit_gradient(offsets, weights, rounding_only).d, stiffness * weights});
                 ++d;
             } else {
                 spring_[i] = stiffness;
@@ -48,11 +51,15 @@ public:
     double energy(const Configuration& c) const override
     {
         double sum = residual_energy(lists_of(c.body), offset_, spring_, c.u, c.gradient);
-        each_flat_residual(c.body, c.u, [&](const Flat&, std::size_t, const Vec3& r, const Vec3& t) { sum += 0.5 * r.dot(t); });
+        each_flat_residual(c.body, c.u,
+                           [&](const Flat&, std::size_t, const Vec3& r, const Vec3& t) { sum += 0.5 * r.dot(t); });
         return sum;
     }
     void add_forces(const Configuration& c, Forces out) const override { run(c.body, c.u, c.gradient, out); }
-    void add_product(const Configuration& c, const Field& dx, const MatrixField& dj, Forces out) const override { run(c.body, dx, dj, out); }
+    void add_product(const Configuration& c, const Field& dx, const MatrixField& dj, Forces out) const override
+    {
+        run(c.body, dx, dj, out);
+    }
     void add_diagonal(const Configuration&, std::vector<Mat3>& block) const override
     {
         for (std::size_t i = 0; i < weight_sum_.size(); ++i)
@@ -99,6 +106,9 @@ private:
 
 } // namespace
 
-std::unique_ptr<Effect> make_hourglass(const MeshlessBody& body, double alpha, double young) { return std::make_unique<Hourglass>(body, alpha, young); }
+std::unique_ptr<Effect> make_hourglass(const MeshlessBody& body, double alpha, double young)
+{
+    return std::make_unique<Hourglass>(body, alpha, young);
+}
 
 } // namespace cinch

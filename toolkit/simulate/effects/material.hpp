@@ -45,7 +45,10 @@ inline void add_cofactor_derivative(const Mat3& f, double s, Mat9& h)
     h.block<3, 3>(6, 3) += x;
 }
 
-inline Eigen::Matrix<double, 9, 1> stacked(const Mat3& m) { return Eigen::Map<const Eigen::Matrix<double, 9, 1>>(m.data()); }
+inline Eigen::Matrix<double, 9, 1> stacked(const Mat3& m)
+{
+    return Eigen::Map<const Eigen::Matrix<double, 9, 1>>(m.data());
+}
 
 /// Green's strain ½ (FᵀF − I) at F = I + H: ½ (H + Hᵀ + HᵀH).
 inline Mat3 green_strain(const Mat3& h) { return 0.5 * (h + h.transpose() + h.transpose() * h); }

@@ -9,8 +9,8 @@
 namespace cinch {
 namespace {
 
-// x − log(1 + x), with an error relative to x²: of log(1 + x) = 2 artanh s, s = x / (2 + x), the first term leaves x² / (2 + x). For |x| < 1/4,
-// s² < 1/49, the terms that are left out are less than u of the first.
+// x − log(1 + x), with an error relative to x²: of log(1 + x) = 2 artanh s, s = x / (2 + x), the first term leaves x² /
+// (2 + x). For |x| < 1/4, s² < 1/49, the terms that are left out are less than u of the first.
 double less_log(double x)
 {
     if (std::abs(x) >= 0.25)
@@ -23,8 +23,8 @@ double less_log(double x)
 }
 
 // Ψ = μ/2 (I − 3) + λ/2 (det F − α)² − μ/2 log(I + 1), I = ‖F‖², less its value at rest, with μ = 4/3 μ_Lamé,
-// λ = λ_Lamé + 5/6 μ_Lamé, which give Hooke's law for small strains, and α = 1 + 3 μ / (4 λ), which makes I stress-free.
-// λ > 0 for every ν in (−1, 0.5): it is E (5 + 2ν) / (12 (1 + ν) (1 − 2ν)).
+// λ = λ_Lamé + 5/6 μ_Lamé, which give Hooke's law for small strains, and α = 1 + 3 μ / (4 λ), which makes I
+// stress-free. λ > 0 for every ν in (−1, 0.5): it is E (5 + 2ν) / (12 (1 + ν) (1 − 2ν)).
 struct NeoHookean {
     static constexpr bool feels_plasticity = true;
     double mu, lambda, alpha;
@@ -36,20 +36,22 @@ struct NeoHookean {
         lambda = l.lambda + 5.0 / 6 * l.mu;
         alpha = 1 + 0.75 * mu / lambda;
     }
-    // With F = I + H, δ = I − 3 and j = det F − 1: 3/8 μ (δ − 2j) + μ/2 (δ/4 − log(1 + δ/4)) + λ/2 j², and in δ − 2j the terms of
-    // first order have cancelled, so that small strains lose no digits: the error is relative to ‖H‖².
+    // With F = I + H, δ = I − 3 and j = det F − 1: 3/8 μ (δ − 2j) + μ/2 (δ/4 − log(1 + δ/4)) + λ/2 j², and in δ − 2j
+    // the terms of first order have cancelled, so that small strains lose no digits: the error is relative to ‖H‖².
     double density(std::size_t, const Mat3& h) const
     {
         const double trace = h.trace(), minors = cofactor(h).trace(), third = h.determinant();
         const double delta = 2 * trace + h.squaredNorm(), j = trace + minors + third;
-        return 0.375 * mu * (h.squaredNorm() - 2 * minors - 2 * third) + 0.5 * mu * less_log(0.25 * delta) + 0.5 * lambda * j * j;
+        return 0.375 * mu * (h.squaredNorm() - 2 * minors - 2 * third) + 0.5 * mu * less_log(0.25 * delta) +
+               0.5 * lambda * j * j;
     }
     // As in the kernel.
     void add_stress(std::size_t, const Mat3& h, Mat3& p) const
     {
         const double delta = 2 * h.trace() + h.squaredNorm();
         const Mat3 c = cofactor_change(h), f = Mat3::Identity() + h;
-        p += 0.75 * mu * (h - c) + mu * delta / (4 * (4 + delta)) * f + lambda * volume_change(h) * (Mat3::Identity() + c);
+        p += 0.75 * mu * (h - c) + mu * delta / (4 * (4 + delta)) * f +
+             lambda * volume_change(h) * (Mat3::Identity() + c);
     }
     void add_all_stresses(const Configuration& c, MatrixField& stress) const
     {

@@ -32,7 +32,8 @@ public:
             const double share = std::min(1.0, flow_.creep * dt_s) * (size - flow_.yield) / size;
             // F_p ← V exp(share · deviator) Vᵀ F_p: the trace is 0, so det F_p stays 1.
             const Mat3& v = squared.eigenvectors();
-            const Mat3 inverse = plastic_inverse[i] * v * Vec3((-share * deviator).array().exp()).asDiagonal() * v.transpose();
+            const Mat3 inverse =
+                plastic_inverse[i] * v * Vec3((-share * deviator).array().exp()).asDiagonal() * v.transpose();
             if (green_strain(inverse.inverse() - Mat3::Identity()).norm() <= flow_.most)
                 plastic_inverse[i] = inverse / std::cbrt(inverse.determinant());
         }

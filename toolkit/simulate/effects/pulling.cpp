@@ -21,7 +21,10 @@ std::vector<double> by_mass(const MeshlessBody& body, const std::vector<std::uin
 
 class Force : public Effect {
 public:
-    Force(const MeshlessBody& body, PullingForce pull) : Effect("pulling"), pull_(std::move(pull)), share_(by_mass(body, pull_.nodes)) {}
+    Force(const MeshlessBody& body, PullingForce pull)
+        : Effect("pulling"), pull_(std::move(pull)), share_(by_mass(body, pull_.nodes))
+    {
+    }
 
     double energy(const Configuration& c) const override
     {
@@ -45,7 +48,9 @@ private:
     {
         if (t < pull_.start_s || t > pull_.end_s)
             return Vec3::Zero();
-        return pull_.period_s > 0 ? Vec3(std::sin(2 * std::numbers::pi * (t - pull_.start_s) / pull_.period_s) * pull_.force) : pull_.force;
+        return pull_.period_s > 0
+                   ? Vec3(std::sin(2 * std::numbers::pi * (t - pull_.start_s) / pull_.period_s) * pull_.force)
+                   : pull_.force;
     }
     PullingForce pull_;
     std::vector<double> share_;
@@ -53,7 +58,10 @@ private:
 
 class Target : public Effect {
 public:
-    Target(const MeshlessBody& body, PullingTarget pull) : Effect("pulling"), pull_(std::move(pull)), share_(by_mass(body, pull_.nodes)) {}
+    Target(const MeshlessBody& body, PullingTarget pull)
+        : Effect("pulling"), pull_(std::move(pull)), share_(by_mass(body, pull_.nodes))
+    {
+    }
 
     double energy(const Configuration& c) const override
     {
@@ -74,7 +82,10 @@ public:
     }
 
 private:
-    Vec3 way(const Configuration& c, std::size_t k) const { return at(c.x, pull_.nodes[k]) - (pull_.target(k, c.time_s) + c.reference.relative(pull_.origin)); }
+    Vec3 way(const Configuration& c, std::size_t k) const
+    {
+        return at(c.x, pull_.nodes[k]) - (pull_.target(k, c.time_s) + c.reference.relative(pull_.origin));
+    }
 
     PullingTarget pull_;
     std::vector<double> share_;
@@ -82,7 +93,13 @@ private:
 
 } // namespace
 
-std::unique_ptr<Effect> make_pulling(const MeshlessBody& body, PullingForce pull) { return std::make_unique<Force>(body, std::move(pull)); }
-std::unique_ptr<Effect> make_pulling(const MeshlessBody& body, PullingTarget pull) { return std::make_unique<Target>(body, std::move(pull)); }
+std::unique_ptr<Effect> make_pulling(const MeshlessBody& body, PullingForce pull)
+{
+    return std::make_unique<Force>(body, std::move(pull));
+}
+std::unique_ptr<Effect> make_pulling(const MeshlessBody& body, PullingTarget pull)
+{
+    return std::make_unique<Target>(body, std::move(pull));
+}
 
 } // namespace cinch

@@ -5,9 +5,9 @@
 
 namespace cinch {
 
-/// An effect whose energy is a density of the deformation of every node: Σ v_i Ψ(J_i), or Σ v_i Ψ(J_i F_p⁻¹) where `Law` feels
-/// plasticity. Law has density(i, H), add_stress(i, H, P) and add_curvature(i, F, ∂P/∂F), in Pa, at F = I + H; the first two with errors
-/// relative to H, and P as the reference is turned.
+/// An effect whose energy is a density of the deformation of every node: Σ v_i Ψ(J_i), or Σ v_i Ψ(J_i F_p⁻¹) where
+/// `Law` feels plasticity. Law has density(i, H), add_stress(i, H, P) and add_curvature(i, F, ∂P/∂F), in Pa, at F = I +
+/// H; the first two with errors relative to H, and P as the reference is turned.
 template <class Law> class StressEffect : public Effect {
 public:
     StressEffect(const char* name, Law law) : Effect(name), law_(std::move(law)) {}
@@ -53,10 +53,13 @@ public:
             out.local[i] += c.body.volume[i] * h;
         }
     }
-    bool dissipates() const override { return requires { law_.viscosity; }; }
+    bool dissipates() const override
+    {
+        return requires { law_.viscosity; };
+    }
     void add_damping(const Configuration& c, Curvature out) const override
     {
-        if constexpr (requires(Mat9& h) { law_.add_damping(Mat3(), h); })
+        if constexpr (requires(Mat9 & h) { law_.add_damping(Mat3(), h); })
             for (std::size_t i = 0; i < c.body.size(); ++i) {
                 Mat9 h = Mat9::Zero();
                 law_.add_damping(matrix_at(c.deformation, i), h);

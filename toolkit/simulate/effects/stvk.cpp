@@ -28,14 +28,18 @@ struct StVenantKirchhoff {
         return mu * e.squaredNorm() + 0.5 * lambda * e.trace() * e.trace();
     }
     void add_stress(std::size_t, const Mat3& h, Mat3& p) const { p += (Mat3::Identity() + h) * second_piola(h); }
-    void add_curvature(std::size_t, const Mat3& f, Mat9& h) const { add_second_piola_derivative(f, second_piola(f - Mat3::Identity()), lambda, mu, h); }
+    void add_curvature(std::size_t, const Mat3& f, Mat9& h) const
+    {
+        add_second_piola_derivative(f, second_piola(f - Mat3::Identity()), lambda, mu, h);
+    }
 };
 
 } // namespace
 
 std::unique_ptr<Effect> make_stvk(double young, double poisson, bool paper_literal)
 {
-    return std::make_unique<StressEffect<StVenantKirchhoff>>("elastic", StVenantKirchhoff(young, poisson, paper_literal ? 4 : 1));
+    return std::make_unique<StressEffect<StVenantKirchhoff>>("elastic",
+                                                             StVenantKirchhoff(young, poisson, paper_literal ? 4 : 1));
 }
 
 } // namespace cinch

@@ -15,7 +15,10 @@ struct VolumePreservation {
         const double d = volume_change(h);
         return 0.5 * stiffness * d * d;
     }
-    void add_stress(std::size_t, const Mat3& h, Mat3& p) const { p += stiffness * volume_change(h) * (Mat3::Identity() + cofactor_change(h)); }
+    void add_stress(std::size_t, const Mat3& h, Mat3& p) const
+    {
+        p += stiffness * volume_change(h) * (Mat3::Identity() + cofactor_change(h));
+    }
     void add_curvature(std::size_t, const Mat3& f, Mat9& h) const
     {
         const auto c = stacked(cofactor(f));

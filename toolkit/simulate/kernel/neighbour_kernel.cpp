@@ -24,7 +24,8 @@ struct Columns {
     }
     HWY_INLINE Quad times(const Quad& b) const
     {
-        return multiply_add(column[2], broadcast<2>(b), multiply_add(column[1], broadcast<1>(b), column[0] * broadcast<0>(b)));
+        return multiply_add(column[2], broadcast<2>(b),
+                            multiply_add(column[1], broadcast<1>(b), column[0] * broadcast<0>(b)));
     }
 };
 
@@ -71,12 +72,14 @@ void scatter(const NeighbourLists& lists, const double* stress, const double* sp
     }
 }
 
-void scatter_stresses(const NeighbourLists& lists, const double* stress, const double* spring, const double* x, double* force)
+void scatter_stresses(const NeighbourLists& lists, const double* stress, const double* spring, const double* x,
+                      double* force)
 {
     spring ? scatter<true>(lists, stress, spring, x, force) : scatter<false>(lists, stress, spring, x, force);
 }
 
-double residual_energy(const NeighbourLists& lists, const double* offset, const double* spring, const double* x, const double* gradient)
+double residual_energy(const NeighbourLists& lists, const double* offset, const double* spring, const double* x,
+                       const double* gradient)
 {
     const std::uint32_t* node = lists.node.data();
     Quad energy = Quad::zero();
@@ -120,12 +123,14 @@ void gather_gradients(const NeighbourLists& lists, const Field& x, MatrixField& 
 {
     HWY_DYNAMIC_DISPATCH(gather_gradients)(lists, x.data(), gradient.data());
 }
-void scatter_stresses(const NeighbourLists& lists, const MatrixField& stress, std::span<const double> spring, const Field& x, Field& force) noexcept
+void scatter_stresses(const NeighbourLists& lists, const MatrixField& stress, std::span<const double> spring,
+                      const Field& x, Field& force) noexcept
 {
-    HWY_DYNAMIC_DISPATCH(scatter_stresses)(lists, stress.data(), spring.empty() ? nullptr : spring.data(), x.data(), force.data());
+    HWY_DYNAMIC_DISPATCH(scatter_stresses)
+    (lists, stress.data(), spring.empty() ? nullptr : spring.data(), x.data(), force.data());
 }
-double residual_energy(const NeighbourLists& lists, std::span<const double> offset, std::span<const double> spring, const Field& x,
-                       const MatrixField& gradient) noexcept
+double residual_energy(const NeighbourLists& lists, std::span<const double> offset, std::span<const double> spring,
+                       const Field& x, const MatrixField& gradient) noexcept
 {
     return HWY_DYNAMIC_DISPATCH(residual_energy)(lists, offset.data(), spring.data(), x.data(), gradient.data());
 }

@@ -12,7 +12,8 @@ HWY_BEFORE_NAMESPACE();
 namespace cinch::HWY_NAMESPACE {
 
 // Four nodes at a time: a Quad holds one entry of their matrices.
-void add_neo_hookean_stress(double mu, double lambda, const double* volume, std::size_t count, const double* rotation, const double* strain, double* stress)
+void add_neo_hookean_stress(double mu, double lambda, const double* volume, std::size_t count, const double* rotation,
+                            const double* strain, double* stress)
 {
     const Quad four = Quad::all(4);
     Quad turn[9];
@@ -45,7 +46,8 @@ void add_neo_hookean_stress(double mu, double lambda, const double* volume, std:
         const Quad j = (trace + ((cofactor[0] + cofactor[4]) + cofactor[8])) + determinant;
         const Quad delta = (trace + trace) + square;
         const Quad v = Quad::load(volumes);
-        const Quad shear = v * Quad::all(0.75 * mu), along = v * (Quad::all(mu) * delta / (four * (four + delta))), across = v * (Quad::all(lambda) * j);
+        const Quad shear = v * Quad::all(0.75 * mu), along = v * (Quad::all(mu) * delta / (four * (four + delta))),
+                   across = v * (Quad::all(lambda) * j);
         Quad p[9];
         for (std::size_t c = 0; c < 3; ++c)
             for (std::size_t r = 0; r < 3; ++r) {
@@ -60,7 +62,8 @@ void add_neo_hookean_stress(double mu, double lambda, const double* volume, std:
         for (std::size_t c = 0; c < 3; ++c) {
             Quad node[4] = {Quad::zero(), Quad::zero(), Quad::zero(), Quad::zero()};
             for (std::size_t r = 0; r < 3; ++r)
-                node[r] = multiply_add(turn[6 + r], p[3 * c + 2], multiply_add(turn[3 + r], p[3 * c + 1], turn[r] * p[3 * c]));
+                node[r] = multiply_add(turn[6 + r], p[3 * c + 2],
+                                       multiply_add(turn[3 + r], p[3 * c + 1], turn[r] * p[3 * c]));
             transpose(node);
             for (std::size_t lane = 0; lane < lanes; ++lane) {
                 double* column = stress + 12 * (first + lane) + 4 * c;
@@ -77,9 +80,11 @@ HWY_AFTER_NAMESPACE();
 namespace cinch {
 HWY_EXPORT(add_neo_hookean_stress);
 
-void add_neo_hookean_stress(double mu, double lambda, std::span<const double> volume, const Mat3& rotation, const MatrixField& strain, MatrixField& stress) noexcept
+void add_neo_hookean_stress(double mu, double lambda, std::span<const double> volume, const Mat3& rotation,
+                            const MatrixField& strain, MatrixField& stress) noexcept
 {
-    HWY_DYNAMIC_DISPATCH(add_neo_hookean_stress)(mu, lambda, volume.data(), volume.size(), rotation.data(), strain.data(), stress.data());
+    HWY_DYNAMIC_DISPATCH(add_neo_hookean_stress)
+    (mu, lambda, volume.data(), volume.size(), rotation.data(), strain.data(), stress.data());
 }
 
 } // namespace cinch
