@@ -132,7 +132,6 @@ void add_simulate(CLI::App& app, SimulateOptions& o)
         return command.add_option(name, value, wrapped(description));
     };
     option("SCENE", o.scene, fmt::format("a scene ({}) or a file (.json)", fmt::join(shipped_scenes(), ", ")))
-        ->required()
         ->option_text("");
     option("--nodes", o.changes.nodes, "simulation nodes per body, where they are sampled [as the scene says]")
         ->check(CLI::Range(1, 100000))
@@ -163,6 +162,8 @@ void add_simulate(CLI::App& app, SimulateOptions& o)
         ->option_text("N");
     command.add_flag("--explain", o.explain, wrapped("say what was left out, and how often each effect was called"));
     command.add_flag("--energies", o.energies, wrapped("a record of every body in every frame too"));
+    command.add_flag("--schema", o.schema,
+                     wrapped("print the JSON schema of scenes, data/scenes/schema.json, instead of running one"));
     add_output(command, o.output, Draws::nothing);
     command.footer("Examples:\n"
                    "  cinch simulate brain-pull --explain\n"

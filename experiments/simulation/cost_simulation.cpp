@@ -74,6 +74,18 @@ void mark_pareto(std::vector<Row>& rows)
                      });
 }
 
+FoundScene scene_with(const CostSimulationOptions& options, const std::string& elastic_model)
+{
+    SceneChanges changes;
+    changes.elastic_model = elastic_model;
+    FoundScene found = find_scene(options.scene, changes);
+    Scene& scene = found.scene;
+    scene.duration_s = std::min(scene.duration_s, options.duration_s);
+    scene.frame_s = scene.duration_s > 0 ? scene.duration_s / std::ceil(scene.duration_s * 60) : 1.0 / 60;
+    scene.integration.cancelled = interrupted;
+    return found;
+}
+
 } // namespace
 
 int cost_simulation(const CostSimulationOptions& options)
@@ -81,33 +93,26 @@ int cost_simulation(const CostSimulationOptions& options)
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     const Provenance from = provenance(1, 0);
     RecordOutput output(options.output, from);
-    FoundScene found = find_scene(options.scene, {});
-    Scene& scene = found.scene;
-    scene.duration_s = std::min(scene.duration_s, options.duration_s);
-    scene.frame_s = scene.duration_s > 0 ? scene.duration_s / std::ceil(scene.duration_s * 60) : 1.0 / 60;
-    scene.integration.cancelled = interrupted;
+    const FoundScene found = scene_with(options, "");
+    const Scene& given = found.scene;
     pin_to_one_core();
     catch_interrupt();
 
     std::vector<Row> rows;
-    const double frame = scene.frame_s;
+    const double frame = given.frame_s;
     const double implicit_steps[] = {frame, frame / 2, frame / 4, frame / 8, frame / 16, frame / 32};
     const double explicit_shares[] = {0.6, 0.3, 0.15};
     std::size_t done = 0;
     const std::size_t wanted =
         2 * (1 + std::size(implicit_steps) + std::size(explicit_shares)) + 1; // runs, and the steps
-    const std::pair<const char*, ElasticSpec::Model> energies[] = {{"neo-hookean", ElasticSpec::Model::neo_hookean},
-                                                                   {"stvk", ElasticSpec::Model::stvk}};
     StepFigures steps;
     try {
         Progress progress("simulating", wanted);
-        Scene still = scene;
+        Scene still = given;
         still.duration_s = 0;
         const Outcome start = or_leave([still, file = found.file] { return run(still, file); });
-        for (const auto& [name, model] : energies) {
-            for (SceneEffect& effect : scene.effects)
-                if (auto* elastic = std::get_if<ElasticSpec>(&effect.what))
-                    elastic->model = model;
+        for (const char* name : {"neo-hookean", "stvk"}) {
+            const Scene scene = scene_with(options, name).scene;
             Scene fine = scene;
             fine.integration.method = Integration::Method::explicit_euler;
             fine.integration.safety = 0.02;
@@ -145,7 +150,7 @@ int cost_simulation(const CostSimulationOptions& options)
     }
     mark_pareto(rows);
     const bool is_complete = !interrupted() || !steps.rows.empty();
-    const auto frames = static_cast<std::size_t>(scene.duration_s / scene.frame_s + 0.5);
+    const auto frames = static_cast<std::size_t>(given.duration_s / given.frame_s + 0.5);
     const Completeness completeness{
         frames, frames, is_complete,
         is_complete ? "" : interrupted_after(done, wanted, "runs")}; // every row is of all frames
@@ -176,7 +181,7 @@ int cost_simulation(const CostSimulationOptions& options)
     output.finish();
     if (!options.output.records_only()) {
         print_note(completeness);
-        fmt::print("{}: {:.3g} s simulated, one core\n\n", options.scene, scene.duration_s);
+        fmt::print("{}: {:.3g} s simulated, one core\n\n", options.scene, given.duration_s);
         std::vector<std::vector<std::string>> cells;
         for (const Row& r : rows)
             cells.push_back({r.pareto ? "*" : "", r.energy, r.integrator, fmt::format("{:.3g}", 1e3 * r.step_s),

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "cinch/surface.hpp"
 #include "experiments/guard_surface.hpp"
@@ -19,6 +20,16 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path scene_folder() { return shipped_folder("scenes"); }
+
+// Of a scene that was read already.
+std::string with_elastic_model(const std::string& text, const std::string& model)
+{
+    nlohmann::json scene = nlohmann::json::parse(text);
+    for (nlohmann::json& effect : scene.at("effects"))
+        if (effect.at("effect") == "elastic")
+            effect["model"] = model;
+    return scene.dump();
+}
 
 } // namespace
 
@@ -49,9 +60,13 @@ FoundScene find_scene(const std::string& name, const SceneChanges& changes)
             name, fmt::format("no such scene; known are {}, or a .json file", fmt::join(shipped_scenes(), ", ")));
     const fs::path path = file ? fs::path(name) : scene_folder() / (name + ".json");
     guard_input(path);
-    const std::string text = read_bytes(path);
-    FoundScene found{parse_scene(text, file ? name : name + ".json", path.parent_path().string()),
-                     file ? name : name + ".json", 0};
+    std::string text = read_bytes(path);
+    const std::string named = file ? name : name + ".json", folder = path.parent_path().string();
+    FoundScene found{parse_scene(text, named, folder), named, 0};
+    if (!changes.elastic_model.empty()) {
+        text = with_elastic_model(text, changes.elastic_model);
+        found.scene = parse_scene(text, named, folder);
+    }
     Scene& scene = found.scene;
     if (changes.nodes) {
         bool any = false;

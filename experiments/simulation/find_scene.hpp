@@ -14,6 +14,7 @@ struct SceneChanges {
     std::size_t nodes = 0;              ///< of bodies whose nodes are sampled; 0 and empty: as the scene has it
     double duration_s = -1, step_s = 0; ///< −1, 0: as the scene has it
     std::string integrator;
+    std::string elastic_model; ///< of all elastic materials
 };
 
 /// A scene with where it comes from.

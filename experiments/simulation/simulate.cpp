@@ -28,44 +28,37 @@ struct BodyTotals {
 };
 
 struct EffectTotals {
-    std::size_t bodies = 0, calls = 0;
+    std::string name;
+    std::size_t bodies = 0; ///< on which the scene has it act
+    std::size_t effects =
+        0; ///< that were made for them; none where nodes are pinned, which costs nothing that can be told apart
+    std::size_t calls = 0;
     double seconds = 0;
 };
 
-// By name, in the order in which effects are listed; pins cost nothing that can be told apart.
-std::vector<std::pair<std::string, EffectTotals>> effect_totals(const Simulation& simulation)
+// Of all effects that a scene can name, in the order in which they are listed.
+std::vector<EffectTotals> effect_totals(const Simulation& simulation)
 {
-    std::vector<std::pair<std::string, EffectTotals>> totals;
+    std::vector<EffectTotals> totals;
     for (const std::string& name : effect_names()) {
-        EffectTotals sum;
+        EffectTotals sum{name};
         for (const Simulation::Body& body : simulation.bodies()) {
-            bool here = false;
-            for (const BodySimulation::Slot& slot : body.simulation.effects())
-                if (slot.effect->name() == name) {
-                    here = true;
-                    sum.calls += slot.calls;
-                    sum.seconds += slot.seconds;
+            const auto& named = simulation.scene().effects;
+            sum.bodies += std::any_of(named.begin(), named.end(), [&](const SceneEffect& e) {
+                return e.kind->name == name && e.acts_on(body.name);
+            });
+            const auto effects = body.simulation.effects();
+            for (std::size_t e = 0; e < effects.size(); ++e)
+                if (effects[e]->name() == name) {
+                    const EffectCost cost = body.simulation.cost(e);
+                    ++sum.effects;
+                    sum.calls += cost.calls;
+                    sum.seconds += cost.seconds;
                 }
-            sum.bodies += here;
         }
-        if (sum.bodies)
-            totals.emplace_back(name, sum);
+        totals.push_back(sum);
     }
     return totals;
-}
-
-std::size_t bodies_pinned(const Simulation& simulation, bool scripted)
-{
-    std::size_t count = 0;
-    for (const Simulation::Body& body : simulation.bodies())
-        count += std::any_of(
-            simulation.scene().effects.begin(), simulation.scene().effects.end(), [&](const SceneEffect& e) {
-                const bool is = scripted ? std::holds_alternative<ScriptedSpec>(e.what)
-                                         : std::holds_alternative<PinnedSpec>(e.what);
-                return is &&
-                       (e.bodies.empty() || std::find(e.bodies.begin(), e.bodies.end(), body.name) != e.bodies.end());
-            });
-    return count;
 }
 
 struct Result {
@@ -167,13 +160,10 @@ void add_totals(const SimulateOptions& options, const Simulation& simulation, co
                 RecordOutput& records)
 {
     std::vector<std::string> names;
-    const auto effects = effect_totals(simulation);
-    for (const auto& [name, totals] : effects)
-        names.push_back(name);
-    if (bodies_pinned(simulation, false))
-        names.push_back("pinned");
-    if (bodies_pinned(simulation, true))
-        names.push_back("scripted");
+    const std::vector<EffectTotals> effects = effect_totals(simulation);
+    for (const EffectTotals& effect : effects)
+        if (effect.bodies)
+            names.push_back(effect.name);
     double shared = 0;
     std::size_t nodes = 0;
     for (const Simulation::Body& body : simulation.bodies()) {
@@ -190,13 +180,14 @@ void add_totals(const SimulateOptions& options, const Simulation& simulation, co
                      {"time_s", simulation.time_s()},
                      {"load_report", simulation.notes()},
                      {"failure", result.failure}});
-    for (const auto& [name, totals] : effects)
-        records.add(Json{{"experiment", "simulate"},
-                         {"scene", options.scene},
-                         {"effect", name},
-                         {"bodies", totals.bodies},
-                         {"calls", totals.calls},
-                         {"ms_per_step", ms_per_step(totals.seconds, result)}});
+    for (const EffectTotals& effect : effects)
+        if (effect.effects)
+            records.add(Json{{"experiment", "simulate"},
+                             {"scene", options.scene},
+                             {"effect", effect.name},
+                             {"bodies", effect.bodies},
+                             {"calls", effect.calls},
+                             {"ms_per_step", ms_per_step(effect.seconds, result)}});
     records.add(Json{{"experiment", "simulate"},
                      {"scene", options.scene},
                      {"effect", "shared: J and the transport of stresses"},
@@ -229,12 +220,13 @@ void print_tables(const SimulateOptions& options, const Simulation& simulation, 
     double shared = 0;
     for (const Simulation::Body& body : simulation.bodies())
         shared += body.simulation.shared_seconds();
-    for (const auto& [name, totals] : effect_totals(simulation))
-        rows.push_back({name, std::to_string(totals.bodies), grouped(totals.calls),
-                        fmt::format("{:.4f}", ms_per_step(totals.seconds, result))});
-    for (const bool scripted : {false, true})
-        if (const std::size_t count = bodies_pinned(simulation, scripted))
-            rows.push_back({scripted ? "scripted" : "pinned", std::to_string(count), "-", "-"});
+    const std::vector<EffectTotals> effects = effect_totals(simulation);
+    for (const EffectTotals& effect : effects)
+        if (effect.effects)
+            rows.push_back({effect.name, std::to_string(effect.bodies), grouped(effect.calls),
+                            fmt::format("{:.4f}", ms_per_step(effect.seconds, result))});
+        else if (effect.bodies)
+            rows.push_back({effect.name, std::to_string(effect.bodies), "-", "-"});
     rows.push_back({"shared", "", "", fmt::format("{:.4f}", ms_per_step(shared, result))});
     fmt::print("{}shared: computing J, and carrying stresses to the nodes\n\n",
                table({"effect", "bodies", "calls", "ms per step"}, rows));
@@ -271,20 +263,18 @@ void print_tables(const SimulateOptions& options, const Simulation& simulation, 
                    "that is left, m/s2. relative: to the greatest acceleration of its step.\n");
     if (options.explain) {
         std::string absent = "Left out of this scene, and so never constructed:";
-        for (const std::string& name : effect_names()) {
-            const bool pin = name == "pinned" || name == "scripted";
-            if (pin ? bodies_pinned(simulation, name == "scripted") == 0 : Effect::constructed(name) == 0)
-                absent += " " + name;
-        }
+        for (const EffectTotals& effect : effects)
+            if (effect.bodies == 0)
+                absent += " " + effect.name;
         fmt::print("\n{}\n", folded(absent));
-        bool needs = false;
-        for (const Simulation::Body& body : simulation.bodies())
-            for (const BodySimulation::Slot& slot : body.simulation.effects())
-                needs |= slot.effect->needs_deformation();
+        const bool needs =
+            std::any_of(simulation.bodies().begin(), simulation.bodies().end(),
+                        [](const Simulation::Body& body) { return body.simulation.model().needs_deformation; });
         fmt::print("J is computed {}.\n",
                    needs ? "in every evaluation: an effect needs it" : "only for frames: no effect needs it");
-        for (const auto& [name, totals] : effect_totals(simulation))
-            fmt::print("{}: {} constructed, {} calls\n", name, Effect::constructed(name), grouped(totals.calls));
+        for (const EffectTotals& effect : effects)
+            if (effect.effects)
+                fmt::print("{}: {} constructed, {} calls\n", effect.name, effect.effects, grouped(effect.calls));
     }
     fmt::print("\n{}\n", describe(from));
 }
@@ -293,6 +283,13 @@ void print_tables(const SimulateOptions& options, const Simulation& simulation, 
 
 int simulate(const SimulateOptions& options)
 {
+    if (options.schema) {
+        fmt::print("{}", scene_schema());
+        return std::fflush(stdout) == 0 ? 0 : throw InputError("standard output cannot be written");
+    }
+    if (options.scene.empty())
+        throw InputError(
+            "simulate: SCENE is required, the name of a scene or a .json file; see 'cinch simulate --help'");
     const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
     if (options.every == 0)

@@ -16,6 +16,7 @@ struct SimulateOptions {
     std::size_t every = 10;         ///< frames from checkpoint to checkpoint
     int threads = 0;
     bool explain = false, energies = false;
+    bool schema = false; ///< print the layout of scenes instead
     OutputOptions output;
 };
 

@@ -36,18 +36,29 @@ inline Field moved(const MeshlessBody& body, const Mat3& a, const Vec3& b, doubl
     return x;
 }
 
-/// The energy of one effect with the nodes at `x`.
-inline double energy_at(const Effect& effect, const MeshlessBody& body, const DeformableSurface* surface,
-                        const Field& x)
+/// The energy of one effect of a body, at present, with the nodes at `x` instead; what dissipates included.
+inline double energy_at(const BodySimulation& simulation, std::size_t effect, const Field& x)
 {
+    const MeshlessBody& body = simulation.body();
     MatrixField d, h, j;
     Field u = x;
     for (std::size_t i = 0; i < body.size(); ++i)
         at(u, i) -= body.rest[i];
     const Reference reference;
     measure(body, reference.rotation, u, Completion::on, d, h, j);
-    static const std::vector<Mat3> no_plasticity;
-    return effect.energy({body, surface, reference, x, u, d, h, j, no_plasticity});
+    const DeformableSurface* surface = simulation.surface() ? &*simulation.surface() : nullptr;
+    return simulation.effects()[effect]->energy({.body = body,
+                                                 .surface = surface,
+                                                 .reference = reference,
+                                                 .x = x,
+                                                 .u = u,
+                                                 .gradient = d,
+                                                 .strain = h,
+                                                 .deformation = j,
+                                                 .plastic_inverse = simulation.plastic_inverse(),
+                                                 .time_s = simulation.time_s(),
+                                                 .memory = simulation.state().memory,
+                                                 .effect = effect});
 }
 
 inline Vec3 total(const Field& f)

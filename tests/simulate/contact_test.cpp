@@ -14,6 +14,7 @@
 #include "cinch/collider.hpp"
 #include "cinch/deform.hpp"
 #include "cinch/surface.hpp"
+#include "toolkit/simulate/contact_search.hpp"
 #include "toolkit/simulate/find_inside.hpp"
 #include "toolkit/simulate/simulation.hpp"
 #include "toolkit/surface/shapes.hpp"
@@ -97,10 +98,8 @@ double mass(const BodySimulation& s)
     return sum;
 }
 
-const BodyContact& contact_of(const BodySimulation& s)
-{
-    return dynamic_cast<const BodyContact&>(*s.effects().back().effect);
-}
+ContactSearch& search_of(Simulation& s) { return dynamic_cast<ContactSearch&>(*s.couplings()[0]); }
+std::size_t pairs(Simulation& s) { return search_of(s).pairs(); }
 
 } // namespace
 
@@ -148,10 +147,10 @@ TEST_CASE("contact forces are the derivative of their energy, their product is t
           "add up to nothing")
 {
     Simulation s = make(two_boxes());
-    while (s.contacts()[0]->pairs() == 0)
+    while (pairs(s) == 0)
         for (const StepReport& r : s.advance())
             REQUIRE(r.failure.empty());
-    s.contacts()[0]->find(); // for the configuration as it is
+    search_of(s).find(); // for the configuration as it is
     const std::size_t slot = s.bodies()[0].simulation.effects().size() - 1;
     Vec3 sum = Vec3::Zero();
     double size = 0;
@@ -167,7 +166,7 @@ TEST_CASE("contact forces are the derivative of their energy, their product is t
     const Field x = body.positions(), v = body.velocities();
     auto energy = [&](const Field& y) {
         body.place(y, v);
-        return test::energy_at(contact_of(body), body.body(), &*body.surface(), y);
+        return test::energy_at(body, slot, y);
     };
     const Field f = body.forces(slot);
     double scale = 0;
@@ -198,20 +197,19 @@ TEST_CASE("an impact in free space keeps momentum, turns the bodies around, and 
         while (s.frame() + 1 < s.frame_count()) {
             for (const StepReport& r : s.advance())
                 REQUIRE(r.failure.empty());
-            deepest = std::max(deepest, s.contacts()[0]->pairs());
+            deepest = std::max(deepest, pairs(s));
         }
         CHECK(deepest > 0);
-        CHECK(s.contacts()[0]->pairs() == 0); // apart again
+        CHECK(pairs(s) == 0); // apart again
         const Vec3 a = momentum(s.bodies()[0].simulation), b = momentum(s.bodies()[1].simulation);
         CHECK(a[0] < -0.3 * 2 * m);
         CHECK(b[0] > 0.3 * 2 * m);
         CHECK((a + b).norm() < 0.1 * 2 * m); // opposite and equal when a frame begins, not quite through it
 
         scene["effects"].erase(2);
-        const std::size_t constructed = Effect::constructed("contact");
         Simulation through = make(scene);
-        CHECK(Effect::constructed("contact") == constructed);
-        CHECK(through.contacts().empty());
+        CHECK(through.bodies()[0].simulation.effects().size() == s.bodies()[0].simulation.effects().size() - 1);
+        CHECK(through.couplings().empty());
         while (through.frame() + 1 < through.frame_count())
             through.advance();
         CHECK(momentum(through.bodies()[0].simulation)[0] == Approx(2 * m));
@@ -228,7 +226,7 @@ TEST_CASE("a run with contact is the same for any number of threads, and after a
         std::string middle;
         while (whole.frame() + 1 < whole.frame_count()) {
             whole.advance();
-            if (middle.empty() && whole.contacts()[0]->pairs() > 0)
+            if (middle.empty() && pairs(whole) > 0)
                 middle = state_of(whole);
         }
         REQUIRE_FALSE(middle.empty());

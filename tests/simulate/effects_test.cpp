@@ -8,7 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "tests/simulate/bodies.hpp"
-#include "toolkit/simulate/surface_force.hpp"
+#include "toolkit/simulate/contact_points.hpp"
 
 using namespace cinch;
 using test::lattice_body;
@@ -89,7 +89,7 @@ BodySimulation with(const MeshlessBody& body, const Named& named, bool remember)
 double energy(BodySimulation& s, const Field& x)
 {
     // potential() leaves out what dissipates; the effect itself does not.
-    return test::energy_at(*s.effects()[0].effect, s.body(), nullptr, x);
+    return test::energy_at(s, 0, x);
 }
 
 Field forces_at(BodySimulation& s, const Field& x)
@@ -207,45 +207,34 @@ TEST_CASE("forces on a surface go to the nodes with their power")
     Field force(x.size(), 0);
     std::vector<double> spring;
     const Vec3 f(1, -2, 0.5);
-    add_point_force(c, 0, f, {force, stress, spring});
+    const ContactPoints points;
+    points.add_force(c, 0, f, {force, stress, spring});
     scatter_stresses(lists_of(body), stress, {}, x, force);
-    CHECK(whole(force).dot(whole(dx)) == Approx(f.dot(point_change(c, 0, dx, dg))).epsilon(1e-12));
+    CHECK(whole(force).dot(whole(dx)) == Approx(f.dot(points.change(c, 0, dx, dg))).epsilon(1e-12));
     CHECK((test::total(force) - f).norm() < 1e-12);
-    // The map is linear in X: point(x + dx) − point(x) = point_change(dx), as the nodes are of full rank.
+    // The map is linear in X: place(x + dx) − place(x) = change(dx), as the nodes are of full rank.
     Field y = x;
     whole(y) += whole(dx);
     MatrixField gy(g.size());
     gather_gradients(lists_of(body), y, gy);
-    CHECK((point({body, &surface, reference, y, y, gy, gy, gy, no_plasticity}, 0) - point(c, 0) -
-           point_change(c, 0, dx, dg))
-              .norm() < 1e-12);
+    const Configuration there{body, &surface, reference, y, y, gy, gy, gy, no_plasticity};
+    CHECK((points.place(there, 0) - points.place(c, 0) - points.change(c, 0, dx, dg)).norm() < 1e-12);
 }
 
-TEST_CASE("effects that are not added are not constructed, store nothing, and J is only computed where one needs it")
+TEST_CASE("effects store nothing before they remember, and J is only computed where one needs it")
 {
     const MeshlessBody body = lattice_body({1, 1, 1}, 3, 3, 3);
-    const std::size_t before[] = {Effect::constructed("hourglass"),  Effect::constructed("viscosity"),
-                                  Effect::constructed("plasticity"), Effect::constructed("ground"),
-                                  Effect::constructed("damping"),    Effect::constructed("volume"),
-                                  Effect::constructed("pulling")};
-    const std::size_t elastic = Effect::constructed("elastic"), gravity = Effect::constructed("gravity");
     BodySimulation s(body, {});
     s.add(make_gravity({0, 0, -1}));
     Integration integration;
     REQUIRE(s.advance(0.1, integration).failure.empty());
     CHECK(s.shared_seconds() == 0); // gravity alone: no J
-    CHECK(s.effects()[0].calls > 0);
+    CHECK(s.cost(0).calls > 0);
     s.add(make_neo_hookean(1000, 0.3));
     REQUIRE(s.advance(0.1, integration).failure.empty());
     CHECK(s.shared_seconds() > 0);
-    CHECK(s.effects()[1].calls > 0);
+    CHECK(s.cost(1).calls > 0);
     CHECK(s.plastic_inverse().empty());
-    CHECK(Effect::constructed("elastic") == elastic + 1);
-    CHECK(Effect::constructed("gravity") == gravity + 1);
-    const std::size_t after[] = {Effect::constructed("hourglass"),  Effect::constructed("viscosity"),
-                                 Effect::constructed("plasticity"), Effect::constructed("ground"),
-                                 Effect::constructed("damping"),    Effect::constructed("volume"),
-                                 Effect::constructed("pulling")};
-    for (std::size_t i = 0; i < std::size(before); ++i)
-        CHECK(after[i] == before[i]);
+    for (const Memory& memory : s.state().memory)
+        CHECK(memory.values.empty());
 }

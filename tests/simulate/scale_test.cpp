@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/simulate/bodies.hpp"
+#include "toolkit/simulate/contact_search.hpp"
 #include "toolkit/simulate/simulation.hpp"
 
 using namespace cinch;
@@ -321,7 +322,7 @@ TEST_CASE("a body moves far away as it does here")
         for (Simulation* s : {&a, &b})
             for (const StepReport& r : s->advance())
                 REQUIRE(r.failure == "");
-        pairs += a.contacts()[0]->pairs();
+        pairs += dynamic_cast<const ContactSearch&>(*a.couplings()[0]).pairs();
     }
     CHECK(pairs > 0);
     for (std::size_t k = 0; k < a.bodies().size(); ++k) {

@@ -31,11 +31,8 @@ int main()
                     "scene", "."),
         "scene");
     BodySimulation& s = simulation.bodies()[0].simulation;
-    if (Effect::constructed("gravity") != 1 || Effect::constructed("elastic") != 1)
+    if (s.effects().size() != 2 || simulation.couplings().size() != 0 || effect_names().size() < 10)
         return 1;
-    for (const std::string& name : effect_names())
-        if (name != "gravity" && name != "elastic" && Effect::constructed(name) != 0)
-            return 1;
 #else
     BodySimulation s(body, {});
     s.add(make_gravity({0, 0, -9.81}));

@@ -3,8 +3,8 @@
 
 #include "cinch/surface.hpp"
 #include "toolkit/simulate/kernel/neighbour_kernel.hpp"
+#include "toolkit/simulate/memory.hpp"
 #include "toolkit/simulate/meshless_body.hpp"
-#include "toolkit/simulate/reference.hpp"
 
 namespace cinch {
 
@@ -23,7 +23,16 @@ struct Configuration {
     const MatrixField& deformation;           ///< J_i = R (I + H_i)
     const std::vector<Mat3>& plastic_inverse; ///< F_p⁻¹ per node; empty without plasticity
     double time_s = 0;
-    Vec3 datum = Vec3::Zero(); ///< from the reference's origin: where the energy of a uniform force is 0
+    Vec3 datum = Vec3::Zero();           ///< from the reference's origin: where the energy of a uniform force is 0
+    std::span<const Memory> memory = {}; ///< of all effects
+    std::size_t effect = 0;              ///< which of them sees this
+
+    /// What the effect that sees this remembers; nothing where there is no memory.
+    const Memory& remembered() const
+    {
+        static const Memory nothing;
+        return effect < memory.size() ? memory[effect] : nothing;
+    }
 };
 
 /// Whether models without completion are to be seen (stability experiments break them on purpose).

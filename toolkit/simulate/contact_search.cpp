@@ -9,22 +9,20 @@
 #include "toolkit/surface/triangle_mesh.hpp"
 
 namespace cinch {
-void ContactSearch::add(BodySimulation& body, BodyContact& contact)
+
+void ContactSearch::add(BodySimulation& body)
 {
     const DeformableSurface& surface = *body.surface();
-    Member member{&body,
-                  &contact,
-                  TrianglesAround(surface.mesh),
-                  signed_volume(surface.mesh) < 0 ? -1.0 : 1.0,
-                  std::vector<double>(surface.mesh.vertices.size(), 0),
-                  {},
-                  {}};
+    const double outside = signed_volume(surface.mesh) < 0 ? -1.0 : 1.0;
+    Member member{&body, body.effects().size(), TrianglesAround(surface.mesh), outside, {}, {}, {}};
+    member.area.resize(surface.mesh.vertices.size(), 0);
     const auto& x = surface.mesh.vertices;
     for (const Triangle& t : surface.mesh.triangles)
         for (const std::uint32_t k : t)
             member.area[k] += (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]).norm() / 6;
     collider_.add(build_bvh(surface, ClusterSize{16, 16}, RestDetail::inner),
                   surface); // it keeps what it needs of the BVH
+    body.add(std::make_unique<BodyContact>());
     members_.push_back(std::move(member));
 }
 
@@ -57,7 +55,7 @@ void ContactSearch::find()
     for (const auto& [bodies, meeting] : of_bodies)
         part(bodies.first, bodies.second, meeting, contacts);
     for (std::size_t b = 0; b < members_.size(); ++b)
-        members_[b].contact->set(std::move(contacts[b]), origin_);
+        members_[b].body->set_memory(members_[b].effect, BodyContact::remembering(contacts[b], origin_));
 }
 
 void ContactSearch::part(std::uint32_t a, std::uint32_t b, const Pairs& pairs,

@@ -5,6 +5,7 @@
 
 #include "cinch/collider.hpp"
 #include "toolkit/simulate/body_simulation.hpp"
+#include "toolkit/simulate/coupling.hpp"
 #include "toolkit/simulate/effects/contact.hpp"
 #include "toolkit/simulate/find_inside.hpp"
 
@@ -15,25 +16,24 @@ namespace cinch {
 /// half. So forces are opposite and equal when a frame begins. The stiffness of a vertex is pressure per depth times
 /// its share of the surface at rest, half of it for either body. O(pairs) plus O(vertices) of the bodies that touch. A
 /// body wholly inside another, or a crossing of edges alone, is not seen.
-class ContactSearch {
+class ContactSearch final : public Coupling {
 public:
     /// `stiffness` in Pa/m.
     explicit ContactSearch(double stiffness) : stiffness_(stiffness), collider_(LazyOptions{}) {}
     ContactSearch(const ContactSearch&) = delete;
     ContactSearch& operator=(const ContactSearch&) = delete;
 
-    /// Both must stay where they are, and alive; the body must have a closed surface; its outside is where that makes
-    /// its volume at rest positive.
-    void add(BodySimulation& body, BodyContact& contact);
+    /// Gives the body an effect that pushes. It must stay where it is, and alive, and have a closed surface; its
+    /// outside is where that makes its volume at rest positive.
+    void add(BodySimulation& body);
 
-    /// For the bodies as they are; sets the contacts of each. The same for every thread count and history.
-    void find();
+    void find() override;
     std::size_t pairs() const { return pairs_; } ///< of triangles that intersected in the last search
 
 private:
     struct Member {
         BodySimulation* body;
-        BodyContact* contact;
+        std::size_t effect; ///< that pushes it
         TrianglesAround around;
         double outside;           ///< 1, or −1 where the surface is inside out
         std::vector<double> area; ///< of each vertex, at rest, m²

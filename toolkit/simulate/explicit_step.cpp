@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 
 namespace cinch {
 
@@ -12,8 +11,8 @@ namespace cinch {
 // begins where the last one ended, with a tenth of noise, so that modes that are new have a share.
 double ExplicitStep::greatest_eigenvalue(const Configuration& c, int iterations, bool stiffness)
 {
-    const std::size_t n = b_.body_.size();
-    Field& mode = b_.slow_mode_;
+    const std::size_t n = model_.body.size();
+    Field& mode = state_.slow_mode;
     const bool fresh = mode.size() != 4 * n;
     if (fresh) {
         mode.assign(4 * n, 0);
@@ -24,29 +23,29 @@ double ExplicitStep::greatest_eigenvalue(const Configuration& c, int iterations,
         size = 1;
     for (std::size_t i = 0; i < 4 * n; ++i) {
         const double noise = i % 4 == 3 ? 0 : std::sin(0.7 + 12.9898 * static_cast<double>(i % 1009));
-        mode[i] = (std::isfinite(mode[i]) ? mode[i] / size : 0) +
-                  (fresh ? 1 : 0.1 / std::sqrt(static_cast<double>(3 * n))) * noise;
+        const double share = fresh ? 1 : 0.1 / std::sqrt(static_cast<double>(3 * n));
+        mode[i] = (std::isfinite(mode[i]) ? mode[i] / size : 0) + share * noise;
     }
     double value = 0;
     Field product(4 * n);
     for (int k = 0; k < iterations; ++k) {
-        b_.zero_pinned(mode);
+        model_.zero_pinned(mode);
         double mass = 0;
         for (std::size_t i = 0; i < n; ++i)
-            mass += b_.body_.mass[i] * at(mode, i).squaredNorm();
+            mass += model_.body.mass[i] * at(mode, i).squaredNorm();
         if (!(mass > 0))
             return 0;
         whole(mode) /= std::sqrt(mass);
         std::fill(product.begin(), product.end(), 0);
         if (stiffness)
-            b_.add_product(c, mode, product);
+            forces_.add_product(c, mode, product);
         else
-            b_.add_local_product(mode, product);
-        b_.zero_pinned(product);
+            forces_.add_local_product(mode, product);
+        model_.zero_pinned(product);
         double next = 0;
         for (std::size_t i = 0; i < n; ++i) {
-            const Vec3 image = -at(product, i) / b_.body_.mass[i];
-            next += b_.body_.mass[i] * image.squaredNorm();
+            const Vec3 image = -at(product, i) / model_.body.mass[i];
+            next += model_.body.mass[i] * image.squaredNorm();
             at(product, i) = image;
         }
         value =
@@ -58,17 +57,18 @@ double ExplicitStep::greatest_eigenvalue(const Configuration& c, int iterations,
     return 1.1 * value;
 }
 
-double ExplicitStep::longest_stable(const Configuration& c)
+double ExplicitStep::longest_stable()
 {
-    b_.assemble(c, BodySimulation::Parts::stiffness);
+    const Configuration c = forces_.configure(state_, state_.u, state_.time_s);
+    forces_.assemble(c, BodyForces::Parts::stiffness);
     const double squared = greatest_eigenvalue(c, 4, true);
     double damping = 0;
-    if (std::any_of(b_.effects_.begin(), b_.effects_.end(),
-                    [](const auto& slot) { return slot.effect->dissipates() || slot.effect->couples_nodes(); })) {
-        b_.assemble(c, BodySimulation::Parts::damping);
-        const Field mode = b_.slow_mode_;
+    if (std::any_of(model_.effects.begin(), model_.effects.end(),
+                    [](const auto& effect) { return effect->dissipates() || effect->couples_nodes(); })) {
+        forces_.assemble(c, BodyForces::Parts::damping);
+        const Field mode = state_.slow_mode;
         damping = greatest_eigenvalue(c, 16, false);
-        b_.slow_mode_ = mode;
+        state_.slow_mode = mode;
     }
     const double divisor = damping + std::sqrt(damping * damping + 4 * squared);
     return divisor > 0 ? 4 / divisor : std::numeric_limits<double>::infinity();
@@ -78,7 +78,7 @@ void ExplicitStep::advance(double dt_s, double longest_s, StepReport& report)
 {
     constexpr int between_estimates = 100; // some ten periods of the fastest mode
     double done = 0;
-    double stable = longest_stable(b_.configure(b_.u_, b_.time_s_)), cap = longest_s;
+    double stable = longest_stable(), cap = longest_s;
     while (done < dt_s) {
         if (integration_.cancelled && integration_.cancelled()) {
             report.failure = "cancelled";
@@ -92,22 +92,21 @@ void ExplicitStep::advance(double dt_s, double longest_s, StepReport& report)
         }
         const double dt = (dt_s - done) / pieces;
         const int run = static_cast<int>(std::min<double>(pieces, between_estimates));
-        std::ostringstream before;
-        b_.save(before);
+        const BodyState before = state_;
         bool short_enough = true;
         for (int s = 0; s < run && short_enough; ++s)
             short_enough = substep(dt);
-        const bool finite = whole(b_.u_).allFinite() && whole(b_.v_).allFinite();
-        stable = finite ? longest_stable(b_.configure(b_.u_, b_.time_s_)) : 0;
-        if ((!(dt <= 0.95 * stable) || !short_enough) &&
-            dt > 1e-7 * dt_s) { // where they lead, these steps are too long: take them back
+        const bool finite = whole(state_.u).allFinite() && whole(state_.v).allFinite();
+        stable = finite ? longest_stable() : 0;
+        // Where they lead, these steps are too long: take them back.
+        if ((!(dt <= 0.95 * stable) || !short_enough) && dt > 1e-7 * dt_s) {
             const double too_long = dt;
-            const Field mode = b_.slow_mode_;
-            std::istringstream back(before.str());
-            b_.restore(back);
-            b_.slow_mode_ = finite ? mode : b_.slow_mode_;
+            Field mode =
+                finite ? std::move(state_.slow_mode) : before.slow_mode; // what it found of the fastest mode stays true
+            state_ = before;
+            state_.slow_mode = std::move(mode);
             cap = std::min(cap, 0.4 * too_long);
-            stable = longest_stable(b_.configure(b_.u_, b_.time_s_));
+            stable = longest_stable();
             ++report.halved;
             continue;
         }
@@ -123,23 +122,21 @@ void ExplicitStep::advance(double dt_s, double longest_s, StepReport& report)
 
 bool ExplicitStep::substep(double dt)
 {
-    const std::size_t n = b_.body_.size();
-    const Configuration c = b_.configure(b_.u_, b_.time_s_);
+    const std::size_t n = model_.body.size();
+    const Configuration c = forces_.configure(state_, state_.u, state_.time_s);
     force_.assign(4 * n, 0);
-    b_.add_forces(c, force_);
-    for (auto& slot : b_.effects_)
-        slot.effect->remember(c, dt);
+    forces_.add(c, force_);
+    forces_.begin_step(c, dt, state_);
     for (std::size_t i = 0; i < n; ++i) {
-        if (b_.pinned_[i])
+        if (model_.pinned[i])
             continue;
-        at(b_.v_, i) += dt / b_.body_.mass[i] * at(force_, i);
-        at(b_.u_, i) += dt * at(b_.v_, i);
+        at(state_.v, i) += dt / model_.body.mass[i] * at(force_, i);
+        at(state_.u, i) += dt * at(state_.v, i);
     }
-    const double before = b_.time_s_;
-    b_.time_s_ += dt;
-    b_.finish(before, dt);
-    return std::all_of(b_.effects_.begin(), b_.effects_.end(),
-                       [&](const auto& slot) { return dt <= slot.effect->longest_step(c); });
+    const double before = state_.time_s;
+    state_.time_s += dt;
+    forces_.end_step(before, dt, state_);
+    return forces_.allow(c, dt);
 }
 
 } // namespace cinch

@@ -229,45 +229,4 @@ LoadedBody load_body(const SceneBody& body, const std::string& file, MeshCache& 
     return loaded;
 }
 
-std::vector<std::uint32_t> select_nodes(const NodeSelection& selection, std::span<const Vec3> nodes,
-                                        const std::string& file, const std::string& path, const std::string& body)
-{
-    std::vector<std::uint32_t> chosen;
-    auto where = [&](auto&& inside) {
-        for (std::size_t i = 0; i < nodes.size(); ++i)
-            if (inside(nodes[i]))
-                chosen.push_back(static_cast<std::uint32_t>(i));
-    };
-    if (std::holds_alternative<EveryNode>(selection)) {
-        where([](const Vec3&) { return true; });
-    } else if (const auto* in_box = std::get_if<NodesInBox>(&selection)) {
-        where([&](const Vec3& p) {
-            return (p.array() >= in_box->low.array()).all() && (p.array() <= in_box->high.array()).all();
-        });
-    } else if (const auto* ball = std::get_if<NodesInBall>(&selection)) {
-        where([&](const Vec3& p) { return (p - ball->centre).norm() <= ball->radius; });
-    } else if (const auto* index = std::get_if<NodesByIndex>(&selection)) {
-        for (const std::uint32_t i : index->index) {
-            if (i >= nodes.size())
-                throw InputError::in_file(file, path + "/nodes/index: body '" + body + "' has simulation nodes 0 to " +
-                                                    std::to_string(nodes.size() - 1) + ", not " + std::to_string(i));
-            chosen.push_back(i);
-        }
-        std::sort(chosen.begin(), chosen.end());
-        chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
-    } else if (const auto* near = std::get_if<NearestNodes>(&selection)) {
-        std::vector<std::uint32_t> order(nodes.size());
-        std::iota(order.begin(), order.end(), 0u);
-        std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-            return (nodes[a] - near->point).squaredNorm() < (nodes[b] - near->point).squaredNorm();
-        });
-        order.resize(std::min(order.size(), near->count));
-        std::sort(order.begin(), order.end());
-        chosen = order;
-    }
-    if (chosen.empty())
-        throw InputError::in_file(file, path + "/nodes: selects no simulation node of body '" + body + "'");
-    return chosen;
-}
-
 } // namespace cinch

@@ -26,8 +26,4 @@ using MeshCache = std::map<std::string, MeshFile>;
 /// Throws InputError with file and path.
 LoadedBody load_body(const SceneBody& body, const std::string& file, MeshCache& meshes);
 
-/// Indices of the nodes, ascending. Throws InputError if there are none, or one that is not there.
-std::vector<std::uint32_t> select_nodes(const NodeSelection& selection, std::span<const Vec3> nodes,
-                                        const std::string& file, const std::string& path, const std::string& body);
-
 } // namespace cinch

@@ -90,6 +90,15 @@ std::vector<double> density_volumes(const MeshlessBody& body, const std::vector<
     return volume;
 }
 
+void scale_to(double total, std::vector<double>& volume)
+{
+    double sum = 0;
+    for (const double v : volume)
+        sum += v;
+    for (double& v : volume)
+        v *= total / sum;
+}
+
 } // namespace
 
 Fit fit_gradient(const Eigen::Matrix3Xd& offsets, const Eigen::VectorXd& weights, double threshold)
@@ -122,8 +131,8 @@ MeshlessBody discretise(std::span<const Vec3> nodes, std::span<const double> vol
     require_default_arithmetic();
     auto positive = [](double x) { return x > 0 && std::isfinite(x); };
     if (nodes.empty() || !positive(options.support_factor) || options.nearest < 1 || !positive(options.density) ||
-        !(options.support_radius >= 0) || (!volume.empty() && volume.size() != nodes.size()) ||
-        !std::all_of(volume.begin(), volume.end(), positive) ||
+        !(options.support_radius >= 0) || !(options.total_volume >= 0) ||
+        (!volume.empty() && volume.size() != nodes.size()) || !std::all_of(volume.begin(), volume.end(), positive) ||
         !std::all_of(nodes.begin(), nodes.end(), [](const Vec3& x) { return x.allFinite(); }))
         throw std::invalid_argument("discretise: at least one node, everything finite and positive is needed");
 
@@ -168,8 +177,13 @@ MeshlessBody discretise(std::span<const Vec3> nodes, std::span<const double> vol
         }
     }
     body.spacing = n > 1 ? *std::min_element(mean_distance.begin(), mean_distance.end()) : 0;
-    body.volume =
-        volume.empty() ? density_volumes(body, mean_distance) : std::vector<double>(volume.begin(), volume.end());
+    if (volume.empty()) {
+        body.volume = density_volumes(body, mean_distance);
+        if (options.total_volume > 0)
+            scale_to(options.total_volume, body.volume);
+    } else {
+        body.volume.assign(volume.begin(), volume.end());
+    }
     for (const double v : body.volume) {
         if (!positive(v) || !positive(options.density * v))
             throw std::invalid_argument("discretise: a node's volume or mass is no positive double");

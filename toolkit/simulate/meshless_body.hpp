@@ -16,6 +16,7 @@ struct MeshlessOptions {
     int nearest = 10;             ///< so many of them
     double support_radius = 0;    ///< m, for every node, instead; 0: not given
     double density = 1000;        ///< kg/m³
+    double total_volume = 0;      ///< m³, to which volumes that are not given are scaled; 0: they are not
 };
 
 /// The discretisation of one elastic body at rest after Müller et al. 2004: nodes, what they weigh, and how a moving

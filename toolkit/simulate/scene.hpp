@@ -4,88 +4,21 @@
 #include <array>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
-#include "toolkit/simulate/body_simulation.hpp"
-#include "toolkit/simulate/effects/effects.hpp"
+#include "toolkit/simulate/effect_kind.hpp"
+#include "toolkit/simulate/integration.hpp"
 
 namespace cinch {
 
-/// Which nodes of a body, by their place at rest (m, before the body is placed in the world).
-struct EveryNode {};
-struct NodesInBox {
-    Vec3 low, high;
-};
-struct NodesInBall {
-    Vec3 centre;
-    double radius;
-};
-struct NodesByIndex {
-    std::vector<std::uint32_t> index;
-};
-struct NearestNodes {
-    Vec3 point;
-    std::size_t count;
-};
-using NodeSelection = std::variant<EveryNode, NodesInBox, NodesInBall, NodesByIndex, NearestNodes>;
-
-/// The effects that a scene can name, each with what it needs.
-struct GravitySpec {
-    Vec3 acceleration;
-};
-struct PullingForceSpec {
-    NodeSelection nodes;
-    PullingForce force;
-};
-struct PullingTargetSpec {
-    NodeSelection nodes;
-    double stiffness = 0;
-    Vec3 offset = Vec3::Zero(); ///< of the target from where the node began; reached after `ramp_s`
-    double ramp_s = 0;
-    bool clip = false; ///< follow the character's clip instead
-};
-struct ElasticSpec {
-    enum class Model { neo_hookean, stvk, stvk_paper } model = Model::neo_hookean;
-    double young = 0, poisson = 0.3;
-};
-struct VolumeSpec {
-    double stiffness = 0;
-};
-struct HourglassSpec {
-    double alpha = 1, young = 0; ///< 0: that of the elastic effect
-};
-struct PlasticitySpec {
-    PlasticFlow flow;
-};
-struct ViscositySpec {
-    double viscosity = 0;
-};
-struct DampingSpec {
-    double rate = 0;
-};
-struct GroundSpec {
-    Ground ground;
-};
-struct ContactSpec {      ///< of the bodies of its effect with each other
-    double stiffness = 0; ///< Pa/m
-};
-struct PinnedSpec {
-    NodeSelection nodes;
-};
-struct ScriptedSpec { ///< axis and centre in the world
-    NodeSelection nodes;
-    Turning turning;
-    Vec3 velocity = Vec3::Zero();
-    double end_s = 0;
-    bool clip = false;
-};
+/// An effect of a scene.
 struct SceneEffect {
+    const EffectKind* kind = nullptr;
+    EffectPlan plan;
     std::vector<std::string> bodies; ///< names; empty: all
-    std::variant<GravitySpec, PullingForceSpec, PullingTargetSpec, ElasticSpec, VolumeSpec, HourglassSpec,
-                 PlasticitySpec, ViscositySpec, DampingSpec, GroundSpec, ContactSpec, PinnedSpec, ScriptedSpec>
-        what;
-    std::string path; ///< in the file, for messages
+    std::string path;                ///< in the file, for messages
+
+    bool acts_on(const std::string& body) const;
 };
 
 struct SceneBody {
@@ -100,9 +33,9 @@ struct SceneBody {
     std::uint64_t seed = 0;
     MeshlessOptions meshless;
     bool volume_by_density = false;
-    double thickness_m = 0; ///< of a sheet
-    Vec3 position = Vec3::Zero(), axis = Vec3::UnitZ(), velocity = Vec3::Zero(),
-         spin = Vec3::Zero(); ///< m, –, m/s, rad/s
+    double thickness_m = 0;                             ///< of a sheet
+    Vec3 position = Vec3::Zero(), axis = Vec3::UnitZ(); ///< m, –
+    Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();  ///< m/s, rad/s
     double angle_deg = 0;
     std::string clip; ///< of a character; empty: its first
     std::string path; ///< in the file, for messages
@@ -120,6 +53,9 @@ struct Scene {
 /// file and the path of the wrong field (like /effects/2/young) and what was expected. Relative file names in it are
 /// taken from `folder`.
 Scene parse_scene(std::string_view text, const std::string& file, const std::string& folder);
+
+/// The layout of scenes, a JSON schema (draft 2020-12): data/scenes/schema.json. What effects have to say is theirs.
+std::string scene_schema();
 
 /// Names of all effects that a scene can name, in the order in which they are listed.
 std::vector<std::string> effect_names();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "toolkit/simulate/contact_search.hpp"
+#include "toolkit/simulate/body_simulation.hpp"
 #include "toolkit/simulate/scene.hpp"
 
 namespace cinch {
@@ -19,9 +19,9 @@ public:
     /// path, for what cannot be: missing files, selections without nodes, effects that need what is not there.
     Simulation(Scene scene, const std::string& file);
 
-    /// From one frame to the next. Where the scene names contacts between bodies, these are found first, and hold for
-    /// the frame; then bodies are independent of each other, and run in parallel. The same bits for any thread count.
-    /// One report per body; if one failed, every body has the state of before.
+    /// From one frame to the next. What bodies do to each other is found first, and holds for the frame; then they are
+    /// independent of each other, and run in parallel. The same bits for any thread count. One report per body; if one
+    /// failed, or an effect or a pin throws, every body has the state of before.
     std::vector<StepReport> advance();
 
     const Scene& scene() const { return scene_; }
@@ -29,19 +29,21 @@ public:
     const std::vector<Body>& bodies() const { return bodies_; }
     std::size_t frame() const { return frame_; } ///< 0 at the start
     std::size_t frame_count() const;             ///< the first one at time 0 included
-    std::vector<std::string>
-    notes() const; ///< of all bodies, in the order of the first that has each; with how many, if several have it
+    /// Of all bodies, in the order of the first that has each; with how many, if several have it.
+    std::vector<std::string> notes() const;
     double time_s() const { return static_cast<double>(frame_) * scene_.frame_s; }
-    std::span<const std::unique_ptr<ContactSearch>> contacts() const { return contacts_; }
+    /// One per effect of the scene that acts between bodies, in their order.
+    std::span<const std::unique_ptr<Coupling>> couplings() const { return couplings_; }
 
-    /// The state, so that restore() on the same scene continues bit for bit.
+    /// The state, so that restore() on the same scene continues bit for bit. A stream that is too short is left failed,
+    /// and the state as it was.
     void save(std::ostream& out) const;
     void restore(std::istream& in);
 
 private:
     Scene scene_;
     std::vector<Body> bodies_;
-    std::vector<std::unique_ptr<ContactSearch>> contacts_; ///< one per effect 'contact'
+    std::vector<std::unique_ptr<Coupling>> couplings_;
     std::size_t frame_ = 0;
 };
 

@@ -4,20 +4,46 @@
 #include <cmath>
 #include <limits>
 
-#include "toolkit/simulate/stream.hpp"
-#include "toolkit/simulate/surface_force.hpp"
+#include "toolkit/simulate/body_builder.hpp"
+#include "toolkit/simulate/contact_points.hpp"
+#include "toolkit/simulate/contact_search.hpp"
+#include "toolkit/simulate/json_fields.hpp"
 
 namespace cinch {
 namespace {
 
+constexpr const char* effect_name = "contact";
+const ContactPoints points;
+
+// A contact in a Memory: corners (whole numbers below 2³², which doubles hold), shares, normal, offset and stiffness,
+// and 0.
+constexpr std::size_t record = 12;
+
+std::size_t count_of(const Memory& memory) { return memory.values.size() / record; }
+
+Contact contact_of(const Memory& memory, std::size_t k)
+{
+    const double* v = memory.values.data() + record * k;
+    auto corner = [&](std::size_t i) { return static_cast<std::uint32_t>(v[i]); };
+    return {{corner(0), corner(1), corner(2)}, {v[3], v[4], v[5]}, {v[6], v[7], v[8]}, v[9], v[10]};
+}
+
+template <class Visit> void each_contact(const Memory& memory, const Visit& visit)
+{
+    for (std::size_t k = 0; k < count_of(memory); ++k)
+        visit(contact_of(memory, k));
+}
+
 Vec3 normal_of(const Contact& c) { return Eigen::Map<const Vec3>(c.normal.data()); }
 
-// `origin`: that of the plane, seen from the reference's.
+// Of the planes, seen from the reference's.
+Vec3 origin_of(const Configuration& at) { return at.reference.relative(at.remembered().reference.origin); }
+
 double depth(const Configuration& at, const Contact& c, const Vec3& origin)
 {
     Vec3 p = -origin;
     for (std::size_t i = 0; i < 3; ++i)
-        p += c.share[i] * point(at, c.corner[i]);
+        p += c.share[i] * points.place(at, c.corner[i]);
     return c.offset - normal_of(c).dot(p);
 }
 
@@ -25,63 +51,80 @@ void push(const Configuration& at, const Contact& c, double size, Forces out)
 {
     for (std::size_t i = 0; i < 3; ++i)
         if (c.share[i] > 0)
-            add_point_force(at, c.corner[i], c.share[i] * size * normal_of(c), out);
+            points.add_force(at, c.corner[i], c.share[i] * size * normal_of(c), out);
 }
 
 template <class Visit> void each_weight(const Configuration& at, const Contact& c, const Visit& visit)
 {
-    for (std::size_t i = 0; i < 3; ++i) {
-        const Weights::Row row = at.surface->weights.of(c.corner[i]);
-        for (std::size_t e = 0; e < row.node.size(); ++e)
-            visit(row.node[e], c.share[i] * row.weight[e]);
-    }
+    for (std::size_t i = 0; i < 3; ++i)
+        points.each_weight(at, c.corner[i],
+                           [&](std::uint32_t node, double weight) { visit(node, c.share[i] * weight); });
 }
 
 } // namespace
 
+BodyContact::BodyContact() : Effect(effect_name) {}
+
+Memory BodyContact::remembering(std::span<const Contact> contacts, const Vec3& origin)
+{
+    Memory memory;
+    memory.reference.origin = origin;
+    for (const Contact& c : contacts) {
+        for (const std::uint32_t corner : c.corner)
+            memory.values.push_back(corner);
+        memory.values.insert(memory.values.end(), c.share.begin(), c.share.end());
+        memory.values.insert(memory.values.end(), c.normal.begin(), c.normal.end());
+        memory.values.insert(memory.values.end(), {c.offset, c.stiffness, 0});
+    }
+    return memory;
+}
+
 double BodyContact::energy(const Configuration& at) const
 {
-    const Vec3 origin = at.reference.relative(origin_);
+    const Vec3 origin = origin_of(at);
     double sum = 0;
-    for (const Contact& c : contacts_)
+    each_contact(at.remembered(), [&](const Contact& c) {
         if (const double d = depth(at, c, origin); d > 0)
             sum += 0.5 * c.stiffness * d * d;
+    });
     return sum;
 }
 
 void BodyContact::add_forces(const Configuration& at, Forces out) const
 {
-    const Vec3 origin = at.reference.relative(origin_);
-    for (const Contact& c : contacts_)
+    const Vec3 origin = origin_of(at);
+    each_contact(at.remembered(), [&](const Contact& c) {
         if (const double d = depth(at, c, origin); d > 0)
             push(at, c, c.stiffness * d, out);
+    });
 }
 
-void BodyContact::prepare_product(const Configuration& at, bool worst)
+/// Here a point is a contact.
+void BodyContact::find_touching(const Configuration& at, bool worst, std::vector<Touch>& touching) const
 {
-    const Vec3 origin = at.reference.relative(origin_);
-    touching_.clear();
-    for (std::size_t k = 0; k < contacts_.size(); ++k)
-        if (worst || depth(at, contacts_[k], origin) > 0)
-            touching_.push_back(k);
+    const Vec3 origin = origin_of(at);
+    for (std::size_t k = 0; k < count_of(at.remembered()); ++k)
+        if (const Contact c = contact_of(at.remembered(), k); worst || depth(at, c, origin) > 0)
+            touching.push_back({k, c.stiffness, 0});
 }
 
-void BodyContact::add_product(const Configuration& at, const Field& dx, const MatrixField& dj, Forces out) const
+void BodyContact::add_product(const Configuration& at, std::span<const Touch> touching, const Field& dx,
+                              const MatrixField& dj, Forces out) const
 {
-    for (const std::size_t k : touching_) {
-        const Contact& c = contacts_[k];
+    for (const Touch& t : touching) {
+        const Contact c = contact_of(at.remembered(), t.point);
         double along = 0;
         for (std::size_t i = 0; i < 3; ++i)
             if (c.share[i] > 0)
-                along += c.share[i] * normal_of(c).dot(point_change(at, c.corner[i], dx, dj));
+                along += c.share[i] * normal_of(c).dot(points.change(at, c.corner[i], dx, dj));
         push(at, c, -c.stiffness * along, out);
     }
 }
 
-void BodyContact::add_diagonal(const Configuration& at, std::vector<Mat3>& block) const
+void BodyContact::add_diagonal(const Configuration& at, std::span<const Touch> touching, std::vector<Mat3>& block) const
 {
-    for (const std::size_t k : touching_) {
-        const Contact& c = contacts_[k];
+    for (const Touch& t : touching) {
+        const Contact c = contact_of(at.remembered(), t.point);
         const Mat3 along = c.stiffness * normal_of(c) * normal_of(c).transpose();
         each_weight(at, c, [&](std::uint32_t node, double weight) { block[node] += weight * weight * along; });
     }
@@ -92,8 +135,9 @@ void BodyContact::add_diagonal(const Configuration& at, std::vector<Mat3>& block
 double BodyContact::longest_step(const Configuration& at) const
 {
     std::vector<double> load(at.body.size(), 0);
-    for (const Contact& c : contacts_)
+    each_contact(at.remembered(), [&](const Contact& c) {
         each_weight(at, c, [&](std::uint32_t node, double weight) { load[node] += 4 * weight * c.stiffness; });
+    });
     double longest = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < load.size(); ++i)
         if (load[i] > 0)
@@ -101,15 +145,35 @@ double BodyContact::longest_step(const Configuration& at) const
     return longest;
 }
 
-void BodyContact::save(std::ostream& out) const
+namespace {
+
+EffectPlan read(JsonFields& f)
 {
-    write_list(out, contacts_);
-    write_raw<double>(out, {origin_.data(), 3});
+    EffectPlan plan;
+    const double stiffness = f.number("stiffness", JsonFields::positive());
+    plan.couple = [stiffness](CouplingBuilder& scene) {
+        auto search = std::make_unique<ContactSearch>(stiffness);
+        for (const CouplingBuilder::Member& body : scene.members()) {
+            if (!body.simulation.surface())
+                scene.complain("body '" + body.name + "' has no surface to touch others with");
+            search->add(body.simulation);
+        }
+        if (scene.members().size() < 2)
+            scene.complain("needs at least two bodies");
+        return search;
+    };
+    return plan;
 }
-void BodyContact::restore(std::istream& in)
-{
-    read_list(in, contacts_);
-    read_raw<double>(in, {origin_.data(), 3});
+
+} // namespace
+
+namespace effects {
+extern const EffectKind contact{effect_name, read, R"json([{
+    "description": "bodies that push each other apart where they overlap",
+    "properties": {"stiffness": {"type": "number", "exclusiveMinimum": 0, "description": "Pa/m: pressure per depth"}},
+    "required": ["stiffness"],
+    "example": {"stiffness": 100}
+}])json"};
 }
 
 } // namespace cinch

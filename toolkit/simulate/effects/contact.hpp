@@ -18,33 +18,22 @@ struct Contact {
 };
 
 /// Planes that push points of one body back: ½ k d² at depth d behind. ContactSearch finds them anew before every
-/// frame.
+/// frame: they are what the effect remembers.
 class BodyContact final : public Effect {
 public:
-    BodyContact() : Effect("contact") {}
-
-    void set(std::vector<Contact> contacts, const Vec3& origin = Vec3::Zero())
-    {
-        contacts_ = std::move(contacts);
-        origin_ = origin;
-    }
-    const std::vector<Contact>& contacts() const { return contacts_; }
+    BodyContact();
+    /// `origin`: from where the planes are seen, m.
+    static Memory remembering(std::span<const Contact> contacts, const Vec3& origin);
 
     bool needs_deformation() const override { return true; }
     double energy(const Configuration& c) const override;
     void add_forces(const Configuration& c, Forces out) const override;
     bool couples_nodes() const override { return true; }
-    void prepare_product(const Configuration& c, bool worst) override;
-    void add_product(const Configuration& c, const Field& dx, const MatrixField& dj, Forces out) const override;
-    void add_diagonal(const Configuration& c, std::vector<Mat3>& block) const override;
+    void find_touching(const Configuration& c, bool worst, std::vector<Touch>& touching) const override;
+    void add_product(const Configuration& c, std::span<const Touch> touching, const Field& dx, const MatrixField& dj,
+                     Forces out) const override;
+    void add_diagonal(const Configuration& c, std::span<const Touch> touching, std::vector<Mat3>& block) const override;
     double longest_step(const Configuration& c) const override;
-    void save(std::ostream& out) const override;
-    void restore(std::istream& in) override;
-
-private:
-    std::vector<Contact> contacts_;
-    Vec3 origin_ = Vec3::Zero();        ///< of the world's, m
-    std::vector<std::size_t> touching_; ///< in the configuration of prepare_product
 };
 
 } // namespace cinch

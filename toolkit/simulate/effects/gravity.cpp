@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "toolkit/simulate/body_builder.hpp"
 #include "toolkit/simulate/effects/effects.hpp"
+#include "toolkit/simulate/json_fields.hpp"
 
 namespace cinch {
 namespace {
 
+constexpr const char* effect_name = "gravity";
+
 class Gravity : public Effect {
 public:
-    explicit Gravity(const Vec3& acceleration) : Effect("gravity"), acceleration_(acceleration) {}
+    explicit Gravity(const Vec3& acceleration) : Effect(effect_name), acceleration_(acceleration) {}
 
     // Of displacements, and of the reference as a whole: what a step compares are displacements, and their energy is
     // not to drown in that of where they are.
@@ -31,7 +35,21 @@ private:
     Vec3 acceleration_;
 };
 
+EffectPlan read(JsonFields& f)
+{
+    const Vec3 acceleration = f.vector("acceleration", Vec3(0, 0, -9.81));
+    return {[acceleration](BodyBuilder& body) { body.add(make_gravity(acceleration)); }};
+}
+
 } // namespace
+
+namespace effects {
+extern const EffectKind gravity{effect_name, read, R"json([{
+    "description": "a force m g",
+    "properties": {"acceleration": {"$ref": "#/$defs/vector", "description": "m/s2 [0, 0, -9.81]"}},
+    "example": {"acceleration": [0, 0, -1]}
+}])json"};
+}
 
 std::unique_ptr<Effect> make_gravity(const Vec3& acceleration) { return std::make_unique<Gravity>(acceleration); }
 

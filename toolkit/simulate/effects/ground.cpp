@@ -4,12 +4,15 @@
 #include <limits>
 #include <vector>
 
+#include "toolkit/simulate/body_builder.hpp"
+#include "toolkit/simulate/contact_points.hpp"
 #include "toolkit/simulate/effects/effects.hpp"
-#include "toolkit/simulate/stream.hpp"
-#include "toolkit/simulate/surface_force.hpp"
+#include "toolkit/simulate/json_fields.hpp"
 
 namespace cinch {
 namespace {
+
+constexpr const char* effect_name = "ground";
 
 constexpr double slow = 5e-4; // see Ground
 
@@ -20,131 +23,97 @@ double cube_root(double v)
     return std::ldexp(std::cbrt(std::ldexp(v, -3 * thirds)), thirds);
 }
 
-// What touches the ground: the vertices of the surface, or the nodes of a body that has none.
+// Friction is a drag μ N / ‖slip of the last step‖ on the slip of this one, by which it reaches Coulomb's force where
+// things slide steadily and holds where they rest: below a slow speed. Remembered are, per point, its place when the
+// step began, and its drag, N/m.
 class GroundContact : public Effect {
 public:
-    explicit GroundContact(const Ground& ground) : Effect("ground"), ground_(ground) { ground_.normal.normalize(); }
+    explicit GroundContact(const Ground& ground)
+        : Effect(effect_name), ground_(ground),
+          points_(ground.at_nodes ? ContactPoints::Of::nodes : ContactPoints::Of::surface)
+    {
+        ground_.normal.normalize();
+    }
 
     bool needs_deformation() const override { return !ground_.at_nodes; }
-    double energy(const Configuration& given) const override
+    double energy(const Configuration& c) const override
     {
-        const Configuration c = seen(given);
-        const Vec3 way = way_from(c);
         double sum = 0;
         each_contact(c, [&](std::size_t k, const Vec3& p, double depth) {
             sum += 0.5 * stiffness(c) * depth * depth;
-            if (const double f = drag(k); f > 0)
-                sum += 0.5 * f * slip(p, k, way).squaredNorm();
+            if (const double f = drag(c, k); f > 0)
+                sum += 0.5 * f * slip(c, p, k).squaredNorm();
         });
         return sum;
     }
-    void add_forces(const Configuration& given, Forces out) const override
+    void add_forces(const Configuration& c, Forces out) const override
     {
-        const Configuration c = seen(given);
-        const Vec3 way = way_from(c);
         each_contact(c, [&](std::size_t k, const Vec3& p, double depth) {
             Vec3 f = stiffness(c) * depth * ground_.normal;
-            if (const double d = drag(k); d > 0)
-                f -= d * slip(p, k, way);
-            add_point_force(c, k, f, out);
+            if (const double d = drag(c, k); d > 0)
+                f -= d * slip(c, p, k);
+            points_.add_force(c, k, f, out);
         });
     }
     bool couples_nodes() const override { return true; }
-    void prepare_product(const Configuration& given, bool worst) override
+    void find_touching(const Configuration& c, bool worst, std::vector<Touch>& touching) const override
     {
-        const Configuration c = seen(given);
-        touching_.clear();
-        if (worst) { // anything may touch within the steps to come
-            for (std::size_t k = 0; k < points_of(c); ++k)
-                touching_.push_back({k, stiffness(c), 0});
-            return;
-        }
-        each_contact(c, [&](std::size_t k, const Vec3&, double depth) {
-            touching_.push_back({k, depth > 0 ? stiffness(c) : 0, drag(k)});
-        });
+        if (worst) // anything may touch within the steps to come
+            for (std::size_t k = 0; k < points_.count(c); ++k)
+                touching.push_back({k, stiffness(c), 0});
+        else
+            each_contact(c, [&](std::size_t k, const Vec3&, double depth) {
+                touching.push_back({k, depth > 0 ? stiffness(c) : 0, drag(c, k)});
+            });
     }
-    void add_product(const Configuration& given, const Field& dx, const MatrixField& dj, Forces out) const override
+    void add_product(const Configuration& c, std::span<const Touch> touching, const Field& dx, const MatrixField& dj,
+                     Forces out) const override
     {
-        const Configuration c = seen(given);
-        for (const Touch& t : touching_) {
-            const Vec3 dp = point_change(c, t.point, dx, dj), along = ground_.normal * ground_.normal.dot(dp);
-            add_point_force(c, t.point, -t.push * along - t.drag * (dp - along), out);
+        for (const Touch& t : touching) {
+            const Vec3 dp = points_.change(c, t.point, dx, dj), along = ground_.normal * ground_.normal.dot(dp);
+            points_.add_force(c, t.point, -t.push * along - t.drag * (dp - along), out);
         }
     }
-    void add_diagonal(const Configuration& given, std::vector<Mat3>& block) const override
+    void add_diagonal(const Configuration& c, std::span<const Touch> touching, std::vector<Mat3>& block) const override
     {
-        const Configuration c = seen(given);
         const Mat3 along = ground_.normal * ground_.normal.transpose();
-        for (const Touch& t : touching_) {
+        for (const Touch& t : touching) {
             const Mat3 push = t.push * along + t.drag * (Mat3::Identity() - along);
-            if (!c.surface) {
-                block[t.point] += push;
-                continue;
-            }
-            const Weights::Row row = c.surface->weights.of(t.point);
-            for (std::size_t e = 0; e < row.node.size(); ++e)
-                block[row.node[e]] += row.weight[e] * row.weight[e] * push;
+            points_.each_weight(c, t.point,
+                                [&](std::uint32_t i, double weight) { block[i] += weight * weight * push; });
         }
     }
-    /// As the drag does for an explicit step: force by velocity, c = μ N / speed. By rows: weights sum to 1, and the 4
-    /// is for what acts through J.
-    void add_damping(const Configuration& given, Curvature out) const override
+    /// As the drag does for an explicit step: force by velocity, c = μ N / speed.
+    void add_damping(const Configuration& c, Curvature out) const override
     {
-        const Configuration c = seen(given);
-        for (std::size_t k = 0; k < before_.size() / 4; ++k) {
-            const double damping = drag(k) * interval_s_;
-            if (damping == 0)
-                continue;
-            if (!c.surface) {
-                out.block[k].diagonal().array() += damping;
-                continue;
-            }
-            const Weights::Row row = c.surface->weights.of(k);
-            for (std::size_t e = 0; e < row.node.size(); ++e)
-                out.block[row.node[e]].diagonal().array() += 4 * row.weight[e] * damping;
-        }
+        each_load(c, [&](std::uint32_t i, double load) { out.block[i].diagonal().array() += load; });
     }
-    /// Friction must not turn a slip around: c Δt ≤ m, m the point's share of the mass of its nodes, a quarter for what
-    /// acts through J.
-    double longest_step(const Configuration& given) const override
+    /// Friction must not turn a slip around: c Δt ≤ m of every node.
+    double longest_step(const Configuration& c) const override
     {
-        const Configuration c = seen(given);
         double longest = std::numeric_limits<double>::infinity();
         std::vector<double> load; // of each node by all points
-        for (std::size_t k = 0; k < before_.size() / 4; ++k) {
-            const double damping = drag(k) * interval_s_;
-            if (damping == 0)
-                continue;
-            if (!c.surface) {
-                longest = std::min(longest, c.body.mass[k] / damping);
-                continue;
-            }
+        each_load(c, [&](std::uint32_t i, double by_point) {
             load.resize(c.body.size(), 0);
-            const Weights::Row row = c.surface->weights.of(k);
-            for (std::size_t e = 0; e < row.node.size(); ++e)
-                load[row.node[e]] += 4 * row.weight[e] * damping;
-        }
+            load[i] += by_point;
+        });
         for (std::size_t i = 0; i < load.size(); ++i)
             if (load[i] > 0)
                 longest = std::min(longest, c.body.mass[i] / load[i]);
         return longest;
     }
-    /// Friction: a drag μ N / ‖slip of the last step‖ on the slip of this one, by which it reaches Coulomb's force
-    /// where things slide steadily and holds where they rest: below a slow speed.
-    void remember(const Configuration& given, double dt_s) override
+    void remember(const Configuration& c, double dt_s, Memory& memory) const override
     {
         if (ground_.friction == 0)
             return;
-        const Configuration c = seen(given);
-        const std::size_t count = points_of(c);
-        std::vector<double> next(4 * count, 0);
+        const std::size_t count = points_.count(c);
+        Memory next{Field(4 * count, 0), c.reference, dt_s};
         double held = 0; // N
-        interval_s_ = dt_s;
         for (std::size_t k = 0; k < count; ++k) {
-            const Vec3 p = point(c, k);
-            std::copy_n(p.data(), 3, next.data() + 4 * k);
-            next[4 * k + 3] = std::max(0.0, depth(c, p));
-            held += stiffness(c) * next[4 * k + 3];
+            const Vec3 p = points_.place(c, k);
+            at(next.values, k) = p;
+            next.values[4 * k + 3] = std::max(0.0, depth(c, p));
+            held += stiffness(c) * next.values[4 * k + 3];
         }
         double mass = 0, volume = 0;
         for (std::size_t i = 0; i < c.body.size(); ++i) {
@@ -152,75 +121,86 @@ public:
             volume += c.body.volume[i];
         }
         const double slow_m_per_s = slow * std::sqrt(held / mass * cube_root(volume));
-        const Vec3 way = way_from(c);
+        const bool first = c.remembered().values.empty();
         for (std::size_t k = 0; k < count; ++k)
-            if (double& drag = next[4 * k + 3]; drag > 0)
-                drag = before_.empty() ? 0
-                                       : ground_.friction * stiffness(c) * drag /
-                                             std::max(slip(Eigen::Map<const Vec3>(next.data() + 4 * k), k, way).norm(),
-                                                      slow_m_per_s * dt_s);
-        before_ = std::move(next);
-        reference_ = c.reference;
-    }
-    void save(std::ostream& out) const override
-    {
-        write_list(out, before_);
-        reference_.save(out);
-        write_raw<double>(out, {&interval_s_, 1});
-    }
-    void restore(std::istream& in) override
-    {
-        read_list(in, before_);
-        reference_.restore(in);
-        read_raw<double>(in, {&interval_s_, 1});
+            if (double& drag = next.values[4 * k + 3]; drag > 0)
+                drag = first ? 0
+                             : ground_.friction * stiffness(c) * drag /
+                                   std::max(slip(c, at(next.values, k), k).norm(), slow_m_per_s * dt_s);
+        memory = std::move(next);
     }
 
 private:
-    Configuration seen(const Configuration& given) const
-    {
-        Configuration c = given;
-        if (ground_.at_nodes)
-            c.surface = nullptr;
-        return c;
-    }
     double depth(const Configuration& c, const Vec3& p) const
     {
         return ground_.normal.dot(c.reference.relative(ground_.point) - p);
     }
-    Vec3 way_from(const Configuration& c) const
-    {
-        return reference_.way_to(c.reference);
-    } ///< from what `before_` refers to
     // What is below the plane, and what still rubs against it: depth ≥ 0.
     template <class Visit> void each_contact(const Configuration& c, const Visit& visit) const
     {
-        const std::size_t count = points_of(c);
+        const std::size_t count = points_.count(c);
         for (std::size_t k = 0; k < count; ++k) {
-            const Vec3 p = point(c, k);
-            if (const double below = depth(c, p); below > 0 || drag(k) > 0)
+            const Vec3 p = points_.place(c, k);
+            if (const double below = depth(c, p); below > 0 || drag(c, k) > 0)
                 visit(k, p, std::max(below, 0.0));
         }
     }
-    double stiffness(const Configuration& c) const { return ground_.stiffness / static_cast<double>(points_of(c)); }
-    double drag(std::size_t k) const { return before_.empty() ? 0 : before_[4 * k + 3]; }
-    Vec3 slip(const Vec3& p, std::size_t k, const Vec3& way) const
+    // N s/m on the nodes of every point that rubs. By rows: weights sum to 1, and what acts through J comes on top.
+    template <class Visit> void each_load(const Configuration& c, const Visit& visit) const
     {
-        const Vec3 d = (p - Eigen::Map<const Vec3>(before_.data() + 4 * k)) + way;
+        const Memory& before = c.remembered();
+        const double share = points_.share_of_stresses(c);
+        for (std::size_t k = 0; k < before.values.size() / 4; ++k)
+            if (const double damping = drag(c, k) * before.interval_s; damping != 0)
+                points_.each_weight(c, k, [&](std::uint32_t i, double weight) { visit(i, share * weight * damping); });
+    }
+    double stiffness(const Configuration& c) const { return ground_.stiffness / static_cast<double>(points_.count(c)); }
+    static double drag(const Configuration& c, std::size_t k)
+    {
+        const Memory& before = c.remembered();
+        return before.values.empty() ? 0 : before.values[4 * k + 3];
+    }
+    Vec3 slip(const Configuration& c, const Vec3& p, std::size_t k) const
+    {
+        const Memory& before = c.remembered();
+        const Vec3 d = (p - at(before.values, k)) + before.reference.way_to(c.reference);
         return d - ground_.normal * ground_.normal.dot(d);
     }
 
     Ground ground_;
-    struct Touch {
-        std::size_t point;
-        double push, drag; ///< N/m, across the plane and along it
-    };
-    std::vector<Touch> touching_; ///< in the configuration of prepare_product
-    double interval_s_ = 0;
-    std::vector<double> before_; ///< per point its place when the step began, and its drag, N/m
-    Reference reference_;        ///< from whose origin those places are seen
+    ContactPoints points_;
 };
 
+EffectPlan read(JsonFields& f)
+{
+    Ground ground;
+    ground.point = f.vector("point", Vec3::Zero());
+    ground.normal = f.has("normal") ? f.direction("normal") : Vec3::UnitZ();
+    ground.stiffness = f.number("stiffness", JsonFields::not_negative());
+    ground.friction = f.number("friction", JsonFields::not_negative(), 0);
+    const std::string at = f.text("at", "surface");
+    if (at != "surface" && at != "nodes")
+        f.complain("at", "'" + at + "' is unknown; known are surface, nodes");
+    ground.at_nodes = at == "nodes";
+    return {[ground](BodyBuilder& body) { body.add(make_ground(ground)); }};
+}
+
 } // namespace
+
+namespace effects {
+extern const EffectKind ground{effect_name, read, R"json([{
+    "description": "a plane that pushes back",
+    "properties": {
+        "point": {"$ref": "#/$defs/vector"},
+        "normal": {"$ref": "#/$defs/vector"},
+        "stiffness": {"type": "number", "minimum": 0, "description": "N/m, of the whole body"},
+        "friction": {"type": "number", "minimum": 0},
+        "at": {"enum": ["surface", "nodes"]}
+    },
+    "required": ["stiffness"],
+    "example": {"point": [0, 0, 0], "normal": [0, 0, 1], "stiffness": 5, "friction": 0.1, "at": "nodes"}
+}])json"};
+}
 
 std::unique_ptr<Effect> make_ground(const Ground& ground) { return std::make_unique<GroundContact>(ground); }
 

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "toolkit/simulate/body_builder.hpp"
 #include "toolkit/simulate/effects/effects.hpp"
+#include "toolkit/simulate/json_fields.hpp"
 
 namespace cinch {
 namespace {
+
+constexpr const char* effect_name = "hourglass";
 
 // A fit that keeps every direction in which the neighbours extend by more than rounding: unlike the gradient of the
 // stresses, the residual is well conditioned in all of them, and must be 0 at rest.
@@ -15,7 +19,7 @@ constexpr double rounding_only = 1e-12;
 class Hourglass : public Effect {
 public:
     Hourglass(const MeshlessBody& body, double alpha, double young)
-        : Effect("hourglass"), offset_(4 * body.neighbour.size(), 0), spring_(body.size(), 0),
+        : Effect(effect_name), offset_(4 * body.neighbour.size(), 0), spring_(body.size(), 0),
           moments_(12 * body.size(), 0), weight_sum_(body.size(), 0)
     {
         for (std::size_t i = 0, d = 0; i < body.size(); ++i) {
@@ -56,11 +60,12 @@ public:
         return sum;
     }
     void add_forces(const Configuration& c, Forces out) const override { run(c.body, c.u, c.gradient, out); }
-    void add_product(const Configuration& c, const Field& dx, const MatrixField& dj, Forces out) const override
+    void add_product(const Configuration& c, std::span<const Touch>, const Field& dx, const MatrixField& dj,
+                     Forces out) const override
     {
         run(c.body, dx, dj, out);
     }
-    void add_diagonal(const Configuration&, std::vector<Mat3>& block) const override
+    void add_diagonal(const Configuration&, std::span<const Touch>, std::vector<Mat3>& block) const override
     {
         for (std::size_t i = 0; i < weight_sum_.size(); ++i)
             block[i].diagonal().array() += weight_sum_[i];
@@ -104,7 +109,30 @@ private:
     std::vector<Flat> flats_;
 };
 
+EffectPlan read(JsonFields& f)
+{
+    const double alpha = f.number("alpha", JsonFields::not_negative(), 1),
+                 given = f.number("young", JsonFields::positive(), 0);
+    return {[alpha, given](BodyBuilder& body) {
+        const double young = given > 0 ? given : body.young();
+        if (!(young > 0))
+            body.complain("needs 'young', or an effect 'elastic' on the same body");
+        body.add(make_hourglass(body.body(), alpha, young));
+    }};
+}
+
 } // namespace
+
+namespace effects {
+extern const EffectKind hourglass{effect_name, read, R"json([{
+    "description": "keeps neighbours where the gradient says that they are",
+    "properties": {
+        "alpha": {"type": "number", "minimum": 0, "description": "[1]"},
+        "young": {"type": "number", "exclusiveMinimum": 0, "description": "[that of the elastic effect]"}
+    },
+    "example": {"alpha": 0.5, "young": 10}
+}])json"};
+}
 
 std::unique_ptr<Effect> make_hourglass(const MeshlessBody& body, double alpha, double young)
 {

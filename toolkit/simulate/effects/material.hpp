@@ -7,6 +7,8 @@
 
 namespace cinch {
 
+inline constexpr const char* elastic_name = "elastic"; ///< of elastic materials, whatever their law
+
 /// Lamé's constants, Pa, of Young's modulus E > 0 and Poisson's ratio ν in (−1, 0.5).
 struct Lame {
     double lambda, mu;

@@ -9,8 +9,8 @@
 namespace cinch {
 namespace {
 
-// x − log(1 + x), with an error relative to x²: of log(1 + x) = 2 artanh s, s = x / (2 + x), the first term leaves x² /
-// (2 + x). For |x| < 1/4, s² < 1/49, the terms that are left out are less than u of the first.
+// x − log(1 + x), with an error relative to x²: of log(1 + x) = 2 artanh s, s = x / (2 + x), the first term leaves
+// x² / (2 + x). For |x| < 1/4, s² < 1/49, the terms that are left out are less than u of the first.
 double less_log(double x)
 {
     if (std::abs(x) >= 0.25)
@@ -71,7 +71,7 @@ struct NeoHookean {
 
 std::unique_ptr<Effect> make_neo_hookean(double young, double poisson)
 {
-    return std::make_unique<StressEffect<NeoHookean>>("elastic", NeoHookean(young, poisson));
+    return std::make_unique<StressEffect<NeoHookean>>(elastic_name, NeoHookean(young, poisson));
 }
 
 } // namespace cinch

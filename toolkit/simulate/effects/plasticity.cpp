@@ -5,18 +5,23 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
+#include "toolkit/simulate/body_builder.hpp"
 #include "toolkit/simulate/effects/effects.hpp"
 #include "toolkit/simulate/effects/material.hpp"
+#include "toolkit/simulate/json_fields.hpp"
 
 namespace cinch {
 namespace {
 
+constexpr const char* effect_name = "plasticity";
+
 class Plasticity : public Effect {
 public:
-    explicit Plasticity(const PlasticFlow& flow) : Effect("plasticity"), flow_(flow) {}
+    explicit Plasticity(const PlasticFlow& flow) : Effect(effect_name), flow_(flow) {}
 
     bool needs_deformation() const override { return true; }
-    void flow(const Configuration& c, double dt_s, std::vector<Mat3>& plastic_inverse) override
+    bool is_plastic() const override { return true; }
+    void flow(const Configuration& c, double dt_s, std::vector<Mat3>& plastic_inverse) const override
     {
         for (std::size_t i = 0; i < c.body.size(); ++i) {
             if (c.body.rank[i] < 3)
@@ -43,7 +48,29 @@ private:
     PlasticFlow flow_;
 };
 
+EffectPlan read(JsonFields& f)
+{
+    PlasticFlow flow;
+    flow.yield = f.number("yield", JsonFields::not_negative());
+    flow.creep = f.number("creep", JsonFields::not_negative());
+    flow.most = f.number("most", JsonFields::not_negative(), 1);
+    return {[flow](BodyBuilder& body) { body.add(make_plasticity(flow)); }};
+}
+
 } // namespace
+
+namespace effects {
+extern const EffectKind plasticity{effect_name, read, R"json([{
+    "description": "stays deformed",
+    "properties": {
+        "yield": {"type": "number", "minimum": 0, "description": "strain from which it flows"},
+        "creep": {"type": "number", "minimum": 0, "description": "1/s"},
+        "most": {"type": "number", "minimum": 0, "description": "strain that can stay [1]"}
+    },
+    "required": ["yield", "creep"],
+    "example": {"yield": 0.1, "creep": 1, "most": 2}
+}])json"};
+}
 
 std::unique_ptr<Effect> make_plasticity(const PlasticFlow& flow) { return std::make_unique<Plasticity>(flow); }
 

@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
+#include "toolkit/simulate/body_builder.hpp"
 #include "toolkit/simulate/effects/effects.hpp"
+#include "toolkit/simulate/json_fields.hpp"
 
 namespace cinch {
 namespace {
+
+constexpr const char* effect_name = "pulling";
 
 // Shares of the nodes by mass; they sum to 1.
 std::vector<double> by_mass(const MeshlessBody& body, const std::vector<std::uint32_t>& nodes)
@@ -22,7 +28,7 @@ std::vector<double> by_mass(const MeshlessBody& body, const std::vector<std::uin
 class Force : public Effect {
 public:
     Force(const MeshlessBody& body, PullingForce pull)
-        : Effect("pulling"), pull_(std::move(pull)), share_(by_mass(body, pull_.nodes))
+        : Effect(effect_name), pull_(std::move(pull)), share_(by_mass(body, pull_.nodes))
     {
     }
 
@@ -48,9 +54,9 @@ private:
     {
         if (t < pull_.start_s || t > pull_.end_s)
             return Vec3::Zero();
-        return pull_.period_s > 0
-                   ? Vec3(std::sin(2 * std::numbers::pi * (t - pull_.start_s) / pull_.period_s) * pull_.force)
-                   : pull_.force;
+        if (!(pull_.period_s > 0))
+            return pull_.force;
+        return std::sin(2 * std::numbers::pi * (t - pull_.start_s) / pull_.period_s) * pull_.force;
     }
     PullingForce pull_;
     std::vector<double> share_;
@@ -59,7 +65,7 @@ private:
 class Target : public Effect {
 public:
     Target(const MeshlessBody& body, PullingTarget pull)
-        : Effect("pulling"), pull_(std::move(pull)), share_(by_mass(body, pull_.nodes))
+        : Effect(effect_name), pull_(std::move(pull)), share_(by_mass(body, pull_.nodes))
     {
     }
 
@@ -91,7 +97,87 @@ private:
     std::vector<double> share_;
 };
 
+EffectPlan read_force(JsonFields& f, NodeSelection nodes)
+{
+    PullingForce pull;
+    pull.force = f.vector("force");
+    pull.start_s = f.number("start", JsonFields::not_negative(), 0);
+    pull.end_s = f.number("end", JsonFields::not_negative(), std::numeric_limits<double>::infinity());
+    pull.period_s = f.number("period", JsonFields::positive(), 0);
+    return {[nodes, pull](BodyBuilder& body) {
+        PullingForce on_body = pull;
+        on_body.nodes = body.select(nodes);
+        body.add(make_pulling(body.body(), std::move(on_body)));
+    }};
+}
+
+EffectPlan read_target(JsonFields& f, NodeSelection nodes)
+{
+    EffectPlan plan;
+    const double stiffness = f.number("stiffness", JsonFields::not_negative());
+    plan.follows_clip = f.flag("clip", false);
+    if (plan.follows_clip) {
+        plan.build = [nodes, stiffness](BodyBuilder& body) {
+            PullingTarget pull{body.select(nodes), stiffness, {}};
+            pull.target = body.clip(pull.nodes);
+            body.add(make_pulling(body.body(), std::move(pull)));
+        };
+        return plan;
+    }
+    const Vec3 offset = f.vector("offset"); // from where the node began
+    const double ramp_s = f.number("ramp", JsonFields::not_negative(), 0);
+    plan.build = [nodes, stiffness, offset, ramp_s](BodyBuilder& body) {
+        PullingTarget pull{body.select(nodes), stiffness, {}, body.origin()};
+        pull.target = [places = body.starts(pull.nodes), offset, ramp_s](std::size_t k, double t) {
+            return Vec3(places[k] + (ramp_s > 0 ? std::min(1.0, t / ramp_s) : 1.0) * offset);
+        };
+        body.add(make_pulling(body.body(), std::move(pull)));
+    };
+    return plan;
+}
+
+EffectPlan read(JsonFields& f)
+{
+    NodeSelection nodes = read_nodes(f, "nodes");
+    return f.has("stiffness") ? read_target(f, std::move(nodes)) : read_force(f, std::move(nodes));
+}
+
 } // namespace
+
+namespace effects {
+extern const EffectKind pulling{effect_name, read, R"json([{
+    "description": "a force on nodes together, spread by mass",
+    "properties": {
+        "nodes": {"$ref": "#/$defs/nodes"},
+        "force": {"$ref": "#/$defs/vector", "description": "N"},
+        "start": {"type": "number", "minimum": 0},
+        "end": {"type": "number", "minimum": 0},
+        "period": {"type": "number", "exclusiveMinimum": 0, "description": "s; the force swings as a sine"}
+    },
+    "required": ["force"],
+    "example": {"nodes": "all", "force": [1, 0, 0], "start": 0, "end": 1, "period": 2}
+}, {
+    "description": "springs to where the nodes began plus an offset",
+    "properties": {
+        "nodes": {"$ref": "#/$defs/nodes"},
+        "stiffness": {"type": "number", "minimum": 0, "description": "N/m, of all together"},
+        "offset": {"$ref": "#/$defs/vector"},
+        "ramp": {"type": "number", "minimum": 0, "description": "s until it is there [0]"},
+        "clip": {"const": false}
+    },
+    "required": ["stiffness", "offset"],
+    "example": {"nodes": {"centre": [0, 0, 0], "radius": 2}, "stiffness": 5, "offset": [0, 0, 1], "ramp": 1}
+}, {
+    "description": "springs to the character's clip",
+    "properties": {
+        "nodes": {"$ref": "#/$defs/nodes"},
+        "stiffness": {"type": "number", "minimum": 0, "description": "N/m, of all together"},
+        "clip": {"const": true}
+    },
+    "required": ["stiffness", "clip"],
+    "example": {"stiffness": 5, "clip": true}
+}])json"};
+}
 
 std::unique_ptr<Effect> make_pulling(const MeshlessBody& body, PullingForce pull)
 {

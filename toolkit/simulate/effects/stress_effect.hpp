@@ -7,7 +7,8 @@ namespace cinch {
 
 /// An effect whose energy is a density of the deformation of every node: Σ v_i Ψ(J_i), or Σ v_i Ψ(J_i F_p⁻¹) where
 /// `Law` feels plasticity. Law has density(i, H), add_stress(i, H, P) and add_curvature(i, F, ∂P/∂F), in Pa, at F = I +
-/// H; the first two with errors relative to H, and P as the reference is turned.
+/// H; the first two with errors relative to H, and P as the reference is turned. A law that lags behind has remember(c,
+/// Δt, memory), and after(memory): the law with these members that holds until it remembers again.
 template <class Law> class StressEffect : public Effect {
 public:
     StressEffect(const char* name, Law law) : Effect(name), law_(std::move(law)) {}
@@ -15,10 +16,11 @@ public:
     bool needs_deformation() const override { return true; }
     double energy(const Configuration& c) const override
     {
+        const auto& law = now(c);
         double sum = 0;
         for (std::size_t i = 0; i < c.body.size(); ++i)
             if (c.body.rank[i] > 0)
-                sum += c.body.volume[i] * law_.density(i, strain(c, i));
+                sum += c.body.volume[i] * law.density(i, strain(c, i));
         return sum;
     }
     void add_forces(const Configuration& c, Forces out) const override
@@ -26,11 +28,12 @@ public:
         if constexpr (requires { law_.add_all_stresses(c, out.stress); })
             if (!plastic(c) && c.body.deficient.empty())
                 return law_.add_all_stresses(c, out.stress);
+        const auto& law = now(c);
         for (std::size_t i = 0; i < c.body.size(); ++i) {
             if (c.body.rank[i] == 0)
                 continue;
             Mat3 p = Mat3::Zero();
-            law_.add_stress(i, strain(c, i), p);
+            law.add_stress(i, strain(c, i), p);
             if (plastic(c))
                 p *= c.plastic_inverse[i].transpose();
             matrix_at(out.stress, i) -= c.body.volume[i] * (c.reference.rotation * p);
@@ -38,11 +41,12 @@ public:
     }
     void add_curvature(const Configuration& c, Curvature out) const override
     {
+        const auto& law = now(c);
         for (std::size_t i = 0; i < c.body.size(); ++i) {
             if (c.body.rank[i] == 0)
                 continue;
             Mat9 h = Mat9::Zero();
-            law_.add_curvature(i, elastic(c, i), h);
+            law.add_curvature(i, elastic(c, i), h);
             if (plastic(c)) {
                 Mat9 l = Mat9::Zero(); // stacked(dJ F_p⁻¹) = l stacked(dJ)
                 for (int r = 0; r < 3; ++r)
@@ -66,23 +70,20 @@ public:
                 out.local[i] += c.body.volume[i] * h;
             }
     }
-    void remember(const Configuration& c, double dt_s) override
+    void remember(const Configuration& c, double dt_s, Memory& memory) const override
     {
-        if constexpr (requires { law_.remember(c, dt_s); })
-            law_.remember(c, dt_s);
-    }
-    void save(std::ostream& out) const override
-    {
-        if constexpr (requires { law_.save(out); })
-            law_.save(out);
-    }
-    void restore(std::istream& in) override
-    {
-        if constexpr (requires { law_.restore(in); })
-            law_.restore(in);
+        if constexpr (requires { law_.remember(c, dt_s, memory); })
+            law_.remember(c, dt_s, memory);
     }
 
 private:
+    decltype(auto) now(const Configuration& c) const
+    {
+        if constexpr (requires { law_.after(c.remembered()); })
+            return law_.after(c.remembered());
+        else
+            return (law_); // a reference
+    }
     static bool plastic(const Configuration& c) { return Law::feels_plasticity && !c.plastic_inverse.empty(); }
     static Mat3 elastic(const Configuration& c, std::size_t i)
     {

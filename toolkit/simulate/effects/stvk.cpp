@@ -38,7 +38,7 @@ struct StVenantKirchhoff {
 
 std::unique_ptr<Effect> make_stvk(double young, double poisson, bool paper_literal)
 {
-    return std::make_unique<StressEffect<StVenantKirchhoff>>("elastic",
+    return std::make_unique<StressEffect<StVenantKirchhoff>>(elastic_name,
                                                              StVenantKirchhoff(young, poisson, paper_literal ? 4 : 1));
 }
 

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "toolkit/simulate/body_builder.hpp"
 #include "toolkit/simulate/effects/effects.hpp"
 #include "toolkit/simulate/effects/material.hpp"
 #include "toolkit/simulate/effects/stress_effect.hpp"
+#include "toolkit/simulate/json_fields.hpp"
 
 namespace cinch {
 namespace {
+
+constexpr const char* effect_name = "volume";
 
 struct VolumePreservation {
     static constexpr bool feels_plasticity = false; // plastic flow keeps the volume
@@ -27,11 +31,26 @@ struct VolumePreservation {
     }
 };
 
+EffectPlan read(JsonFields& f)
+{
+    const double stiffness = f.number("stiffness", JsonFields::not_negative());
+    return {[stiffness](BodyBuilder& body) { body.add(make_volume(stiffness)); }};
+}
+
 } // namespace
+
+namespace effects {
+extern const EffectKind volume{effect_name, read, R"json([{
+    "description": "resists change of volume",
+    "properties": {"stiffness": {"type": "number", "minimum": 0}},
+    "required": ["stiffness"],
+    "example": {"stiffness": 10}
+}])json"};
+}
 
 std::unique_ptr<Effect> make_volume(double stiffness)
 {
-    return std::make_unique<StressEffect<VolumePreservation>>("volume", VolumePreservation{stiffness});
+    return std::make_unique<StressEffect<VolumePreservation>>(effect_name, VolumePreservation{stiffness});
 }
 
 } // namespace cinch
