@@ -134,7 +134,8 @@ TEST_CASE("kernels agree with the formulas of the kinds that best chooses among,
                     for (std::size_t d = 0; d < k; ++d, ++place) {
                         INFO(name_of(method) << ", BV " << bv << ", direction " << d << " of " << k);
                         REQUIRE(fast[place] <= simple[d] + 1e-10);
-                        REQUIRE(single[place] <= simple[d] + 5e-3 * (1 + std::abs(simple[d])));
+                        REQUIRE(single[place] <=
+                                simple[d] + 2e-2 * (1 + std::abs(simple[d]))); // errors of up to 1e-3 of N_j
                         // A guard may bring best further down.
                         REQUIRE((kind.guarded || fast[place] >= simple[d] - 1e-13));
                         REQUIRE((kind.guarded || single[place] >= simple[d] - 1e-4)); // λ in float is another one

@@ -88,7 +88,9 @@ for effects in [[]] + [[example] for example in examples if not example.get("cli
         if effects and path[0] != "effects":
             continue
         for change in (None, "x", -1, 0, [], {}, True):
-            if not is_beyond(path):
+            # Whether 'young' may be left out depends on the other effects.
+            needed = change is None and path[-1] == "young" and effects[0]["effect"] == "hourglass"
+            if not is_beyond(path) and not needed:
                 valid += agree(changed(scene, path, change), f"{effects}, /{'/'.join(map(str, path))} = {change!r}")
         if isinstance(path[-1], str) and "bodies" not in path[1:]:
             renamed = changed(scene, path, None)
