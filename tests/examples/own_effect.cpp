@@ -27,7 +27,7 @@ int main()
 try {
     cinch::SceneSimulation scene(R"({
         "name": "jelly", "duration": 0.5,
-        "bodies": [{"name": "box", "surface": "box", "box": [1, 1, 1], "lattice": [4, 4, 4]}],
+        "bodies": [{"name": "box", "surface": "box", "box": [1, 1, 1], "cells": [2, 2, 2], "lattice": [4, 4, 4]}],
         "effects": [{"effect": "elastic", "young": 1e4}]
     })",
                                  "jelly", ".");

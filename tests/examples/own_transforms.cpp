@@ -38,7 +38,7 @@ int main()
         maps[1].m[2][3] = height; // z += height
         refit(maps, supports);
         evaluate(mesh.vertices, surface.weights, maps, vertices);
-        const cinch::Dop bound(std::span(supports).first(18));
+        const cinch::Dop bound{std::span(supports).first(18)};
         for (const cinch::Vec3& v : vertices)
             if (!bound.aabb().contains(v))
                 return 1; // never
