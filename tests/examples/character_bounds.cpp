@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: Apache-2.0
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Proven boxes of a skinned character, frame by frame: character_bounds FILE.glb
 #include <cinch/io.hpp>
 #include <cinch/refit.hpp>

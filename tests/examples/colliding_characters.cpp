@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: Apache-2.0
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Two characters that play the same clip side by side: which of their triangles intersect, and when.
 // colliding_characters FILE.glb DISTANCE
 #include <cinch/collider.hpp>

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: Apache-2.0
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A force of one's own: a wind that blows on a box of jelly, which slides away with it.
 #include <cinch/simulate.hpp>
 #include <iostream>

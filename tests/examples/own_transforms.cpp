@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: Apache-2.0
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A surface, weights and transforms of one's own: a flag of two simulation nodes, the right one swinging up, in an
 // 18-DOP.
 #include <cinch/deform.hpp>

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: Apache-2.0
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A scene's bodies, simulated, and their proven boxes in every frame: simulated_body SCENE.json
 #include <cinch/refit.hpp>
 #include <cinch/simulate.hpp>
