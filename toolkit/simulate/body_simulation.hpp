@@ -27,10 +27,8 @@ public:
     const std::optional<DeformableSurface>& surface() const { return model_->surface; }
     std::span<const std::unique_ptr<const Effect>> effects() const { return model_->effects; }
     EffectCost cost(std::size_t effect) const { return forces_.cost(effect); }
-    double shared_seconds() const
-    {
-        return forces_.shared_seconds();
-    } ///< of computing J and carrying stresses to nodes
+    /// Of computing J and carrying stresses to nodes.
+    double shared_seconds() const { return forces_.shared_seconds(); }
 
     const BodyState& state() const { return state_; }
     /// One that state() gave once, since the last effect was added.

@@ -15,9 +15,10 @@ class JsonFields;
 
 /// What an effect of a scene does to its bodies, once its fields are read.
 struct EffectPlan {
-    std::function<void(BodyBuilder&)> build{}; ///< to each of them; empty: nothing
-    std::function<std::unique_ptr<Coupling>(CouplingBuilder&)>
-        couple{};       ///< to them together, when all are built; empty: nothing
+    /// To each of them; empty: nothing.
+    std::function<void(BodyBuilder&)> build{};
+    /// To them together, when all are built; empty: nothing.
+    std::function<std::unique_ptr<Coupling>(CouplingBuilder&)> couple{};
     double young = 0; ///< Pa, of an elastic material, for effects on the same body that ask for it; 0: it is none
     bool follows_clip = false; ///< it takes nodes where their character's clip does, so that the body begins there
 };

@@ -101,7 +101,7 @@ const char* const body_schema = R"json({
         "name": {"type": "string", "pattern": "^[A-Za-z0-9_-][A-Za-z0-9_.-]{0,63}$"},
         "surface": {
             "type": "string",
-            "description": "a shape (brain, santa-45682, fish, ...), box, sheet, or a mesh or character file, relative to this one"
+            "description": "a shape (brain, fish, ...), box, sheet, or a mesh or character file, relative to this one"
         },
         "size": {
             "type": "number",

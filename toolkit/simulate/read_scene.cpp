@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "toolkit/simulate/read_scene.hpp"
 
-#include <algorithm>
 #include <filesystem>
 
 #include <nlohmann/json.hpp>
@@ -80,11 +79,6 @@ SceneEffect read_effect(const Json& json, const std::string& file, const std::st
 }
 
 } // namespace
-
-bool SceneEffect::acts_on(const std::string& body) const
-{
-    return bodies.empty() || std::find(bodies.begin(), bodies.end(), body) != bodies.end();
-}
 
 Scene parse_scene(std::string_view text, const std::string& file, const std::string& folder)
 {

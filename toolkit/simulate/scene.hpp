@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <string_view>
@@ -18,7 +19,10 @@ struct SceneEffect {
     std::vector<std::string> bodies; ///< names; empty: all
     std::string path;                ///< in the file, for messages
 
-    bool acts_on(const std::string& body) const;
+    bool acts_on(const std::string& body) const
+    {
+        return bodies.empty() || std::find(bodies.begin(), bodies.end(), body) != bodies.end();
+    }
 };
 
 struct SceneBody {
