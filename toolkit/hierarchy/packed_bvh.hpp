@@ -38,6 +38,8 @@ struct ChosenKind {
 struct KindPolicy {
     double worth_twice;
     bool guarded;
+    /// λ begins where it was calibrated, and D is evaluated there: then large BVs far below Eq. 12 need no guard.
+    bool calibrated = true;
 };
 inline constexpr KindPolicy for_refits{0.96, true}, for_queries{0.85, false};
 
