@@ -38,6 +38,19 @@ template <class Enum> CLI::Validator one_of(std::vector<std::pair<std::string, E
         "");
 }
 
+// Real numbers; NaN, which CLI::Range lets through, is none of them.
+CLI::Validator within(double low, double high)
+{
+    return CLI::Validator(
+        [=](std::string& text) {
+            double x = 0;
+            if (CLI::detail::lexical_cast(text, x) && x >= low && x <= high)
+                return std::string();
+            return fmt::format("expected a number from {} to {}, found '{}'", low, high, text);
+        },
+        "");
+}
+
 enum class Draws { charts, nothing };
 
 void add_output(CLI::App& command, OutputOptions& o, Draws draws = Draws::charts)
@@ -79,7 +92,7 @@ void add_input(CLI::App& command, InputOptions& o)
         ->check(CLI::Range(1, 100000))
         ->option_text("N");
     option("--support", o.support, "reach of a simulation node, in fill distances [2]")
-        ->check(CLI::Range(1e-3, 1e3))
+        ->check(within(1e-3, 1e3))
         ->option_text("X");
     option("--motion", o.motion, fmt::format("scripted motion: {} [strong]", motion_names))->option_text("NAME");
     option("--weights", o.weights, "weights of a mesh's vertices as text, see below")->option_text("FILE");
@@ -87,7 +100,7 @@ void add_input(CLI::App& command, InputOptions& o)
     option("--body", o.body, "which body of a scene [all for verify, else the first]")->option_text("NAME");
     option("--clip", o.clip, "which clip of a character or of --transforms [the first]")->option_text("NAME");
     option("--fps", o.fps, "frames per second sampled from a character's clip [30]")
-        ->check(CLI::Range(1e-3, 1e6))
+        ->check(within(1e-3, 1e6))
         ->option_text("X");
     option("--frames", o.frames, "how many frames, evenly spread, the last one included [4 if scripted, else all]")
         ->check(CLI::Range(1, 100000))
@@ -111,7 +124,7 @@ void add_scaling(CLI::App& app, ScalingOptions& o)
                      wrapped("of a character: what is modelled, saying what is missing [refused]"));
     add_arithmetic(command, o.precision, o.passes);
     command.add_option("--seconds", o.seconds, wrapped("of measuring per size [1]"))
-        ->check(CLI::Range(0.001, 1e6))
+        ->check(within(0.001, 1e6))
         ->option_text("X");
     command.add_option("--seed", o.seed, wrapped("seed of everything random [0]"))->option_text("N");
     add_output(command, o.output);
@@ -137,10 +150,10 @@ void add_simulate(CLI::App& app, SimulateOptions& o)
         ->check(CLI::Range(1, 100000))
         ->option_text("N");
     option("--duration", o.changes.duration_s, "seconds to simulate [as the scene says]")
-        ->check(CLI::Range(0.0, 1e30))
+        ->check(within(0.0, 1e30))
         ->option_text("S");
     option("--step", o.changes.step_s, "longest time step in seconds [as the scene says]")
-        ->check(CLI::Range(1e-30, 1e30))
+        ->check(within(1e-30, 1e30))
         ->option_text("S");
     option("--integrator", o.changes.integrator, "implicit or explicit [as the scene says]")
         ->check(CLI::IsMember({"implicit", "explicit"}))
@@ -369,7 +382,7 @@ void add_cost(CLI::App& app, CostOptions& o, CostSimulationOptions& s)
         ->check(CLI::IsMember(std::vector(kdops.begin(), kdops.end())))
         ->option_text("K,...");
     command.add_option("--seconds", o.seconds, wrapped("of measuring per k [2]"))
-        ->check(CLI::Range(0.001, 1e6))
+        ->check(within(0.001, 1e6))
         ->option_text("X");
     command.add_option("--leaf", o.leaf, wrapped("most triangles per leaf [16]"))
         ->check(CLI::Range(1, 1000000))
@@ -379,7 +392,7 @@ void add_cost(CLI::App& app, CostOptions& o, CostSimulationOptions& s)
                     wrapped("of this scene instead: step size, integrator and energy against error and time"))
         ->option_text("SCENE");
     command.add_option("--duration", s.duration_s, wrapped("of the scene to simulate, at most [0.25]"))
-        ->check(CLI::Range(0.001, 1e4))
+        ->check(within(0.001, 1e4))
         ->option_text("S");
     command.add_flag("!--this-input-only", o.all_scenes,
                      wrapped("the gap of the dual evaluation for the input alone, not for every shipped shape"));
@@ -452,7 +465,7 @@ void add_fuzz(CLI::App& app, FuzzOptions& o)
         return command.add_option(name, value, wrapped(description));
     };
     option("--seconds", o.seconds, "stop after so many seconds; 0 runs nothing")
-        ->check(CLI::Range(0.0, 1e9))
+        ->check(within(0.0, 1e9))
         ->option_text("X");
     option("--cases", o.cases, "stop after so many cases [100,000 if no --seconds]")
         ->check(CLI::NonNegativeNumber)

@@ -84,7 +84,7 @@ json box_body(const char* name, const json& extra)
 }
 
 // A pair that falls on the ground, slides and meets; a bar that is held, pulled and flows; a sheet in a spin; a single
-// node.
+// node; a body with nodes sampled in it.
 json everything(const std::string& method)
 {
     json integrator = {{"method", method}, {"step", 0.015625}};
@@ -116,7 +116,15 @@ json everything(const std::string& method)
                {"lattice", {1, 1, 1}},
                {"density", 1000},
                {"position", {-8, 0, 0.25}},
-               {"velocity", {1, 0, 0}}}}},
+               {"velocity", {1, 0, 0}}},
+              {{"name", "sampled"},
+               {"surface", "box"},
+               {"box", {0.75, 0.5, 0.5}},
+               {"cells", {6, 4, 4}},
+               {"nodes", 24},
+               {"density", 1000},
+               {"position", {0, -8, 1}},
+               {"spin", {1, 2, 0}}}}},
             {"effects",
              {{{"effect", "gravity"}, {"acceleration", {0, 0, -9.81}}},
               {{"effect", "elastic"}, {"young", 1e5}},

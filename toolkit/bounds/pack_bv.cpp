@@ -54,6 +54,7 @@ public:
         bv_ = {};
         bv_.kind = kind;
         bv_.start = static_cast<T>(start);
+        bv_.guarded = guarded;
         bv_.count = static_cast<std::uint32_t>(rest.node.size());
         bv_.first_node = static_cast<std::uint32_t>(out_.node.size());
         bv_.first_value = out_.value.size();
@@ -64,8 +65,6 @@ public:
             for (std::uint32_t j : order_)
                 out_.node.push_back(rest.node[j]);
             out_.node.resize(bv_.first_node + blocks_of(rest.node.size()) * block_lanes, out_.node.back());
-            if (guarded && kind == Method::local)
-                put_probes(rest);
         }
         put_box(rest.box, extent_.origin, bv_.centre, bv_.half);
         if (oriented && are_normal(*oriented)) // else the other box does
@@ -97,33 +96,6 @@ private:
                 to.push_back(static_cast<std::uint32_t>(j));
         }
         order_.insert(order_.end(), others.begin(), others.end());
-    }
-
-    // Each the node whose box is farthest from those of the probes before it, the first from the middle. None where Eq.
-    // 12 may lie below the second-greatest extremum, or there are too few nodes.
-    void put_probes(const RestBv& rest)
-    {
-        const std::size_t count = rest.node.size();
-        if (count < guard_probes ||
-            std::any_of(rest.space.l.begin(), rest.space.l.end(), [](double l) { return l != 0; }))
-            return;
-        std::vector<double> distance(count);
-        auto distance_to = [&](std::size_t j, const Vec3& place) {
-            return (rest.local[j].centre - place).squaredNorm();
-        };
-        for (std::size_t j = 0; j < count; ++j)
-            distance[j] = distance_to(j, rest.box.centre);
-        for (std::size_t n = 0; n < guard_probes; ++n) {
-            const auto farthest =
-                static_cast<std::size_t>(std::max_element(distance.begin(), distance.end()) - distance.begin());
-            out_.node.push_back(rest.node[farthest]);
-            if (n == 0)
-                std::fill(distance.begin(), distance.end(), std::numeric_limits<double>::infinity());
-            distance[farthest] = -1; // not again
-            for (std::size_t j = 0; j < count; ++j)
-                distance[j] = std::min(distance[j], distance_to(j, rest.local[farthest].centre));
-        }
-        bv_.probed = true;
     }
 
     // Whether T holds every component of the axes to within u|a|, and so does the product with what it grows by: none

@@ -23,7 +23,7 @@ struct BvChoice {
     Method kind;
     double start = 0;                      ///< PackedBv::start
     const OrientedBox* oriented = nullptr; ///< to be taken instead of the other box, where all of it is normal in T
-    bool guarded = false;                  ///< it has an Eq. 12 in reserve: the kind local gets probes
+    bool guarded = false;                  ///< PackedBv::guarded
 };
 
 /// Appends one BV, everything rounded outward to T; `x` are the rest vertices. Throws std::length_error for a BV of

@@ -13,8 +13,6 @@ namespace cinch {
 inline constexpr std::size_t block_lanes = 8;
 constexpr std::size_t blocks_of(std::size_t count) { return (count + block_lanes - 1) / block_lanes; }
 constexpr std::size_t quads_of(std::size_t points) { return (points + 3) / 4; }
-/// Simulation nodes far apart in a BV, whose extrema over its box are floors (guard-inl.hpp).
-inline constexpr std::size_t guard_probes = 8;
 constexpr bool takes_one_by_one(Method kind) { return kind == Method::support || kind == Method::linear; }
 
 /// One BV as the kernels read it: rest data in T (float or double), rounded outward, relative to a rest origin that all
@@ -35,7 +33,7 @@ template <class T> struct PackedBv {
     std::uint32_t also = 0; ///< place of a second bound of the same BV to intersect with; 0 if there is none
     std::uint32_t guard =
         0; ///< place of the BV's Eq. 12, taken too where this bound may exceed it clearly (guard-inl.hpp); 0: never
-    bool probed = false; ///< guard_probes of its nodes follow the blocks of all
+    bool guarded = false; ///< local alone: the bound itself never exceeds Eq. 12 clearly
     std::uint64_t first_value = 0;
     T centre[4] = {0, 0, 0, 1}, half[4] = {}; ///< rest box, and a 1 for θ
     T axis[3][3] = {};                        ///< and its axes instead of `half` if it is oriented

@@ -14,8 +14,12 @@
 // below N), and 0.004 for the sphere (n + 32 roundings on a sum of leaves that is n times what any one of them passes,
 // thrice). All of it is unproven room: nothing relies on it, and none may be taken away without a derivation.
 
+#include <bit>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <type_traits>
 
 namespace cinch {
 
@@ -25,6 +29,13 @@ inline constexpr double infinite = std::numeric_limits<double>::infinity();
 
 template <class T> inline constexpr T unit_roundoff_of = sizeof(T) == 4 ? T(0x1p-24) : T(0x1p-53);
 template <class T> inline constexpr T smallest_subnormal_of = sizeof(T) == 4 ? T(0x1p-149) : T(0x1p-1074);
+
+/// n·η for n up to 2^23 in float, 2^52 in double: the bits of a subnormal number count η. A product would take a
+/// processor longer than a whole BV of few simulation nodes.
+template <class T> inline T smallest_times(std::size_t n) noexcept
+{
+    return std::bit_cast<T>(static_cast<std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>>(n));
+}
 
 /// At least the next T above x, for every finite x: fl(x + fl(fl(φ|x|) + η)), φ = u(1 + 2u)
 /// [Rump, Zimmermann, Boldo, Melquiond 2009]. At most two steps up. So fl(a + b) ≤ succ(fl(a + b)) bounds a + b
@@ -64,7 +75,8 @@ inline double extremum_error(double largest_magnitude) noexcept
 /// + 8 n_k η covers γ's higher order (n_k < 2²⁰), M ≤ M̂/(1 − γ₇) and its own roundings.
 inline double evaluation_error(double influences, double largest_magnitude) noexcept
 {
-    return succ((influences + 8) * unit_roundoff * largest_magnitude + 8 * influences * smallest_subnormal);
+    return succ((influences + 8) * unit_roundoff * largest_magnitude +
+                smallest_times<double>(8 * static_cast<std::size_t>(influences)));
 }
 
 /// Bound on the rounding of T̂ = Σ fl(w·fl(b̂ − λ)) over n nodes, given Â, the sum of the absolute values computed
@@ -73,7 +85,7 @@ inline double evaluation_error(double influences, double largest_magnitude) noex
 /// two roundings.
 inline double sum_error(double nodes, double absolute_sum) noexcept
 {
-    return succ((nodes + 4) * unit_roundoff * absolute_sum + nodes * smallest_subnormal);
+    return succ((nodes + 4) * unit_roundoff * absolute_sum + smallest_times<double>(static_cast<std::size_t>(nodes)));
 }
 
 // The kernels (kernel/bound_kernel.hpp) work in T = float or double with unit roundoff u_T, on projected maps q, θ and
@@ -119,10 +131,7 @@ template <class T> inline T dual_sum_factor(double depth) noexcept
 {
     return static_cast<T>((1.02 * depth + 8) * static_cast<double>(unit_roundoff_of<T>));
 }
-template <class T> inline T dual_sum_underflow(std::size_t nodes) noexcept
-{
-    return static_cast<T>(2 * nodes) * smallest_subnormal_of<T>;
-}
+template <class T> inline T dual_sum_underflow(std::size_t nodes) noexcept { return smallest_times<T>(2 * nodes); }
 /// Most simulation nodes of a BV for the kernels in float, so that m·u ≤ 1/200 here, and less than 1/100 above.
 inline constexpr std::size_t most_nodes_in_float = 65536;
 /// And in double: the n_k < 2²⁰ and the fewer than 2²⁰ terms above.

@@ -24,6 +24,15 @@ void lower_distances(const std::vector<Vec3>& points, const Vec3& node, std::vec
         squared[i] = std::min(squared[i], (points[i] - node).squaredNorm());
 }
 
+// The first of those that are farthest but for rounding: on a grid many are, and which of them is greatest by its last
+// bits depends on the unit of length.
+std::size_t farthest(const std::vector<double>& squared)
+{
+    const double most = *std::max_element(squared.begin(), squared.end()), tied = most - most * 0x1p-40;
+    return static_cast<std::size_t>(
+        std::find_if(squared.begin(), squared.end(), [&](double x) { return x >= tied; }) - squared.begin());
+}
+
 } // namespace
 
 // One ray along z per column. A column whose crossings do not cancel (open surface) is passed over.
@@ -111,7 +120,7 @@ SimulationNodes sample_nodes(const TriangleMesh& mesh, std::size_t count, std::u
             break; // every point is a node already
         nodes.position.push_back(points[next]);
         lower_distances(points, points[next], squared);
-        next = static_cast<std::size_t>(std::max_element(squared.begin(), squared.end()) - squared.begin());
+        next = farthest(squared);
     }
     nodes.fill_distance = std::sqrt(squared[next]);
     return nodes;

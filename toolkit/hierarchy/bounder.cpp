@@ -28,13 +28,6 @@ template <class T> void intersect(std::span<T> supports, std::span<const T> othe
         supports[i] = std::min(supports[i], other[i]);
 }
 
-KindPolicy policy_for(const RefitOptions& options, Bounder::Leaves leaves)
-{
-    KindPolicy policy = leaves == Bounder::Leaves::included ? for_refits : for_queries;
-    policy.calibrated = options.passes > 0 && !options.remember;
-    return policy;
-}
-
 // One method with kernels, in one arithmetic.
 template <class T> struct KernelPart {
     PackedBvh<T> packed;
@@ -44,7 +37,8 @@ template <class T> struct KernelPart {
     KernelPart(const Bvh& bvh, const DeformableSurface& surface, Method method, const RefitOptions& options,
                Bounder::Leaves leaves)
         : packed(pack<T>(bvh, surface,
-                         choose_kinds(bvh, surface, method, options.rest_shape, policy_for(options, leaves)),
+                         choose_kinds(bvh, surface, method, options.rest_shape,
+                                      leaves == Bounder::Leaves::included ? for_refits : for_queries),
                          leaves == Bounder::Leaves::included))
     {
         if (options.remember)

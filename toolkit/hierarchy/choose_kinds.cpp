@@ -14,8 +14,6 @@ namespace cinch {
 namespace {
 
 constexpr int kdop = 6;
-// Simulation nodes; BVs of more have a guard unless they lie far below Eq. 12.
-constexpr std::uint32_t guarded_below = 64;
 
 // p → R (p + S p + Q(p, p)) in units of the surface, R a rotation, S and Q small and random; value and Jacobian at each
 // node.
@@ -103,7 +101,7 @@ Trial calibrate(const Bvh& bvh, const DeformableSurface& surface, Method kind,
     start.assign(bvs, 0.0);
     Trial best = attempt(packed, frames);
     for (const double candidate : {0.3, 0.5, 0.7, 0.8, 0.85, 0.9, 0.95, 1.0}) {
-        if (kind == Method::linear || kind == Method::eq12)
+        if (kind == Method::linear)
             break; // no λ to start
         for (PackedBv<double>& bv : packed.bvs)
             bv.start = candidate;
@@ -156,9 +154,6 @@ std::vector<ChosenKind> choose_kinds(const Bvh& bvh, const DeformableSurface& su
             chosen[i].start = start[i];
         return chosen;
     }
-    Trial eq12;
-    if (std::vector<double> none; policy.guarded)
-        eq12 = calibrate(bvh, surface, Method::eq12, frames, none);
     const std::vector<Method> kinds = tightest_first(chosen_methods);
     std::vector<Trial> trial(kinds.size());
     std::vector<std::vector<double>> start(kinds.size());
@@ -174,27 +169,11 @@ std::vector<ChosenKind> choose_kinds(const Bvh& bvh, const DeformableSurface& su
                 }
             return width;
         };
-        // Below Eq. 12 in every direction of every frame, and of many simulation nodes: as the kind local is where its
-        // boxes are far smaller than the BV's. Its λ alone could make it exceed Eq. 12 then, and the more nodes there
-        // are the less a λ can be off.
-        auto far_below_eq12 = [&](std::size_t kind) {
-            if (!policy.calibrated || bvh.bvs[i].influence_count < guarded_below)
-                return false;
-            for (std::size_t f = 0; f < frames.size(); ++f)
-                for (std::size_t d = 0; d < kdop; ++d) {
-                    const std::size_t first = (f * bvh.bvs.size() + i) * kdop;
-                    const double width = eq12.supports[first + d] + eq12.supports[first + (d ^ 1)];
-                    if (!(trial[kind].supports[first + d] <= eq12.supports[first + d] - 0.02 * width))
-                        return false;
-                }
-            return true;
-        };
         std::size_t best = 0;
         for (std::size_t k = 1; k < kinds.size(); ++k)
             if (trial[k].width[i] < trial[best].width[i])
                 best = k;
-        chosen[i] = {kinds[best], {}, start[best][i], 0, false, false};
-        chosen[i].guarded = policy.guarded && !(kinds[best] == Method::local && far_below_eq12(best));
+        chosen[i] = {kinds[best], {}, start[best][i], 0, false, policy.guarded};
         double width = policy.worth_twice * trial[best].width[i];
         for (std::size_t a = 0; a < kinds.size(); ++a)
             for (std::size_t b = a + 1; b < kinds.size(); ++b)

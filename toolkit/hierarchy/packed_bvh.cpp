@@ -54,24 +54,30 @@ PackedBvh<T> pack(const Bvh& bvh, const DeformableSurface& surface, std::span<co
     if (!leaves)
         out.place.assign(bvh.bvs.size(), 0);
     auto wanted = [&](std::size_t i) { return leaves || !bvh.bvs[i].is_leaf(); };
+    const auto put = [&](std::size_t i, Method kind, double start, bool oriented, bool guarded) {
+        const auto place = static_cast<std::uint32_t>(out.bvs.size());
+        pack_bv<T>(bvh.rest(i), x, out.rest, {kind, start, oriented ? &bvh.bvs[i].oriented : nullptr, guarded}, out);
+        return place;
+    };
     for (std::size_t i = 0; i < bvh.bvs.size(); ++i)
         if (wanted(i)) {
+            const ChosenKind& own = kinds[i];
+            const std::uint32_t place =
+                put(i, own.kind, own.start, own.oriented, own.guarded && own.kind == Method::local);
             if (!leaves)
-                out.place[i] = static_cast<std::uint32_t>(out.bvs.size());
-            pack_bv<T>(
-                bvh.rest(i), x, out.rest,
-                {kinds[i].kind, kinds[i].start, kinds[i].oriented ? &bvh.bvs[i].oriented : nullptr, kinds[i].guarded},
-                out);
+                out.place[i] = place;
         }
+    const auto packed = [&](std::size_t i) -> PackedBv<T>& { return out.bvs[leaves ? i : out.place[i]]; };
     for (std::size_t i = 0; i < bvh.bvs.size(); ++i)
         if (kinds[i].also && wanted(i)) {
-            out.bvs[leaves ? i : out.place[i]].also = static_cast<std::uint32_t>(out.bvs.size());
-            pack_bv<T>(bvh.rest(i), x, out.rest, {*kinds[i].also, kinds[i].also_start}, out);
+            const std::uint32_t place =
+                put(i, *kinds[i].also, kinds[i].also_start, false, kinds[i].guarded && *kinds[i].also == Method::local);
+            packed(i).also = place;
         }
     for (std::size_t i = 0; i < bvh.bvs.size(); ++i)
-        if (kinds[i].guarded && wanted(i)) {
-            out.bvs[leaves ? i : out.place[i]].guard = static_cast<std::uint32_t>(out.bvs.size());
-            pack_bv<T>(bvh.rest(i), x, out.rest, {Method::eq12}, out);
+        if (kinds[i].guarded && kinds[i].kind != Method::local && kinds[i].also != Method::local && wanted(i)) {
+            const std::uint32_t place = put(i, Method::eq12, 0, false, false);
+            packed(i).guard = place;
         }
     out.bvs.shrink_to_fit();
     out.node.shrink_to_fit();

@@ -29,7 +29,7 @@ struct ChosenKind {
     std::optional<Method> also;
     double start = 0, also_start = 0;
     bool oriented = false; ///< over the oriented box; convex, eq12 and limited only
-    bool guarded = false;  ///< with an Eq. 12 in reserve (PackedBv::guard)
+    bool guarded = false;  ///< never clearly looser than Eq. 12: local by itself, others with one in reserve
 };
 
 /// What `best` is chosen for. Two kinds take twice the time, and are worth it where their intersection has at most a
@@ -38,8 +38,6 @@ struct ChosenKind {
 struct KindPolicy {
     double worth_twice;
     bool guarded;
-    /// λ begins where it was calibrated, and D is evaluated there: then large BVs far below Eq. 12 need no guard.
-    bool calibrated = true;
 };
 inline constexpr KindPolicy for_refits{0.96, true}, for_queries{0.85, false};
 

@@ -7,11 +7,42 @@
 #define CINCH_BY_BLOCKS_INL
 #endif
 
+#include <optional>
+
 #include "toolkit/bounds/kernel/dual-inl.hpp"
+#include "toolkit/bounds/kernel/guard-inl.hpp"
 #include "toolkit/bounds/kernel/search-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace cinch::HWY_NAMESPACE {
+
+/// The kind local: D at λ near the best one, and with a guard at the second-greatest b too, unless the bound is close
+/// to Eq. 12 or below it (guard-inl.hpp).
+template <class T, std::size_t kAxes> void local(const KernelInput<T>& in, const PackedBv<T>& bv,
+                                                 const std::uint32_t* node, const T* block, T* b, T* remembered,
+                                                 Bound<T, kAxes>& out)
+{
+    constexpr std::size_t rows = PackedBv<T>::rows(Method::local);
+    Extrema<T, kAxes> e;
+    std::optional<LaneFloors<T, kAxes>> floors;
+    if (bv.guarded)
+        floors.emplace(bv, *in.maps, node);
+    extrema<T, kAxes, Boxes::local, false>(bv, *in.maps, node, block, b, e, out.error, floors ? &*floors : nullptr);
+    begin<T, kAxes>(e, out);
+    search<T, kAxes>(in, bv, e, remembered, out, [&]<bool kMass>(const PerSide<T, kAxes>& at, Dual<T, kAxes>& d) {
+        dual<T, kAxes, kMass>(bv, block, rows, b, at, d);
+    });
+    if (!floors)
+        return;
+    floors->second(out.floor);
+    if (bv.sum_l == 0 && is_close<T, kAxes>(in, bv, out))
+        return;
+    PerSide<T, kAxes> lambda;
+    Dual<T, kAxes> d;
+    second_greatest<T, kAxes>(bv, b, lambda);
+    dual<T, kAxes, false>(bv, block, rows, b, lambda, d);
+    intersect<T, kAxes>(in, bv, e, lambda, d, out);
+}
 
 /// The kinds for many simulation nodes: λ where the kind says, D there, and every such value intersected with the
 /// greatest b.
@@ -28,8 +59,8 @@ template <class T, std::size_t kAxes> void bound_by_blocks(const KernelInput<T>&
 
     Extrema<T, kAxes> e;
     if (bv.kind == Method::local)
-        extrema<T, kAxes, Boxes::local, false>(bv, *in.maps, node, block, b, e, out.error);
-    else if (bv.oriented)
+        return local<T, kAxes>(in, bv, node, block, b, remembered, out);
+    if (bv.oriented)
         extrema<T, kAxes, Boxes::oriented, true>(bv, *in.maps, node, block, b, e, out.error);
     else
         extrema<T, kAxes, Boxes::common, true>(bv, *in.maps, node, block, b, e, out.error);
@@ -46,10 +77,6 @@ template <class T, std::size_t kAxes> void bound_by_blocks(const KernelInput<T>&
         dual<T, kAxes, false>(bv, block, rows, b, lambda, d);
         intersect<T, kAxes>(in, bv, e, lambda, d, out);
     }
-    if (bv.kind == Method::local)
-        search<T, kAxes>(in, bv, e, remembered, out, [&]<bool kMass>(const PerSide<T, kAxes>& at, Dual<T, kAxes>& own) {
-            dual<T, kAxes, kMass>(bv, block, rows, b, at, own);
-        });
 }
 
 } // namespace cinch::HWY_NAMESPACE

@@ -7,6 +7,7 @@
 #define CINCH_BY_ROWS_INL
 #endif
 
+#include "toolkit/bounds/kernel/guard-inl.hpp"
 #include "toolkit/bounds/kernel/linear-inl.hpp"
 #include "toolkit/bounds/kernel/search-inl.hpp"
 #include "toolkit/bounds/kernel/support-inl.hpp"

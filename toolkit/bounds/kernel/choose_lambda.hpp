@@ -39,18 +39,14 @@ public:
         (here.slope < 0 ? falling_ : rising_) = here;
         const T drop = rising_.value - falling_.value - rising_.slope * (rising_.at - falling_.at);
         const T step = drop / (falling_.slope - rising_.slope), crossing = falling_.at + step;
-        least_ = std::isfinite(step) ? falling_.value + falling_.slope * step : here.value;
         return std::isfinite(crossing) ? crossing : lambda;
     }
-    /// D is nowhere less, rounding aside: where the tangents cross.
-    T least() const { return least_; }
 
 private:
     struct Tangent {
         T at, value, slope;
     };
     Tangent falling_, rising_;
-    T least_ = 0;
 };
 
 /// The next frame's λ and step, λ having slope `slope` of D in this one. Steps go downhill, longer while the direction

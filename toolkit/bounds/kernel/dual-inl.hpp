@@ -7,6 +7,7 @@
 #define CINCH_DUAL_INL
 #endif
 
+#include "toolkit/bounds/kernel/guard-inl.hpp"
 #include "toolkit/bounds/kernel/lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -16,22 +17,20 @@ namespace cinch::HWY_NAMESPACE {
 enum class Boxes { common, oriented, local };
 
 /// b̂_j of every simulation node along and against the axes, into b: per block and axis 8 along, then 8 against it.
-/// kSecond asks for the two greatest, otherwise it is the greatest and the mean weighted by r.
+/// kSecond asks for the two greatest, otherwise it is the greatest and the mean weighted by r. `floors`, of the kind
+/// local with a guard, are raised.
 template <class T, std::size_t kAxes, Boxes kBoxes, bool kSecond>
 void extrema(const PackedBv<T>& bv, const ProjectedMaps<T>& maps, const std::uint32_t* node, const T* block, T* b,
-             Extrema<T, kAxes>& out, T& error)
+             Extrema<T, kAxes>& out, T& error, [[maybe_unused]] LaneFloors<T, kAxes>* floors = nullptr)
 {
     constexpr bool kCommon = kBoxes != Boxes::local;
     constexpr std::size_t rows = PackedBv<T>::rows(kCommon ? Method::limited : Method::local);
-    Lanes<T> most = Lanes<T>::all(0), first[2][kAxes], other[2][kAxes]; // greatest; second-greatest, or Σ r p and Σ r w
-    for (std::size_t a = 0; a < kAxes; ++a) {
-        first[0][a] = first[1][a] = Lanes<T>::all(-infinity_of<T>);
-        other[0][a] = other[1][a] = Lanes<T>::all(kSecond ? -infinity_of<T> : 0);
-    }
-    T repeats[block_lanes]; // 0, and −∞ where the last block repeats its last node
-    for (std::size_t n = 0; n < block_lanes; ++n)
-        repeats[n] = n < (bv.count - 1) % block_lanes + 1 ? T(0) : -infinity_of<T>;
-    const auto repeated = Lanes<T>::load(repeats);
+    Lanes<T> most = Lanes<T>::all(0);
+    TwoGreatest<T, kAxes> two;               // the greatest alone, and
+    Lanes<T> position[kAxes], radius[kAxes]; // Σ r p and Σ r w, unless it is kSecond
+    std::fill_n(position, kAxes, Lanes<T>::all(0));
+    std::fill_n(radius, kAxes, Lanes<T>::all(0));
+    const auto repeated = repeated_lanes(bv);
     const std::size_t passed_over =
         blocks_of(bv.count) < 16 ? 0 : 3; // of every 4 blocks, by the mean, which need not be exact
     Lanes<T> ranges = Lanes<T>::all(0);
@@ -44,6 +43,9 @@ void extrema(const PackedBv<T>& bv, const ProjectedMaps<T>& maps, const std::uin
         }
         if (!kSecond && (i & passed_over) == 0)
             ranges = ranges + row(1);
+        if constexpr (kBoxes == Boxes::local)
+            if (floors && i + 1 == blocks_of(bv.count))
+                floors->raise(two.first);
         auto take = [&](std::size_t a, const Lanes<T>(&q)[4], const Lanes<T>* norm) CINCH_FLATTEN {
             const auto p = fma(q[0], c[0], fma(q[1], c[1], fma(q[2], c[2], q[3])));
             auto w = fma(magnitude(q[0]), e[0], fma(magnitude(q[1]), e[1], magnitude(q[2]) * e[2]));
@@ -59,17 +61,14 @@ void extrema(const PackedBv<T>& bv, const ProjectedMaps<T>& maps, const std::uin
             const Lanes<T> side[2] = {w + p, w - p};
             for (std::size_t s = 0; s < 2; ++s, b += block_lanes) {
                 side[s].store(b);
-                if constexpr (kSecond) {
-                    const auto once = i + 1 < blocks_of(bv.count) ? side[s] : side[s] + repeated;
-                    other[s][a] = greater(less(once, first[s][a]), other[s][a]);
-                    first[s][a] = greater(once, first[s][a]);
-                } else {
-                    first[s][a] = greater(side[s], first[s][a]);
-                }
+                if constexpr (kSecond)
+                    two.take(s, a, i + 1 < blocks_of(bv.count) ? side[s] : side[s] + repeated);
+                else
+                    two.first[s][a] = greater(side[s], two.first[s][a]);
             }
             if (!kSecond && (i & passed_over) == 0) {
-                other[0][a] = fma(row(1), p, other[0][a]);
-                other[1][a] = fma(row(1), w, other[1][a]);
+                position[a] = fma(row(1), p, position[a]);
+                radius[a] = fma(row(1), w, radius[a]);
             }
         };
         Lanes<T> q[4];
@@ -87,27 +86,15 @@ void extrema(const PackedBv<T>& bv, const ProjectedMaps<T>& maps, const std::uin
         });
     }
     error = greatest(most);
-    greatest(first, out.greatest);
+    greatest(two.first, out.greatest);
     if constexpr (kSecond) {
-        for (std::size_t s = 0; s < 2; ++s)
-            for (std::size_t a = 0; a < kAxes; ++a) {
-                const T top = out.greatest[s][a];
-                T x[2 * block_lanes], second = -infinity_of<T>; // of the lanes' two greatest
-                first[s][a].store(x);
-                other[s][a].store(x + block_lanes);
-                bool seen = false;
-                for (const T value : x) {
-                    if (value == top && !seen)
-                        seen = true;
-                    else
-                        second = value > second ? value : second;
-                }
-                out.second[s][a] = bv.count > 1 ? second : top;
-            }
-        out.second.repeat_last();
+        two.second(bv.count, out.second);
     } else {
+        Lanes<T> sums[2][kAxes];
+        std::copy_n(position, kAxes, sums[0]);
+        std::copy_n(radius, kAxes, sums[1]);
         PerSide<T, kAxes> both; // position and radius
-        sum(other, both);
+        sum(sums, both);
         const T range = sum(ranges);
         PerSide<T, kAxes> sign;
         std::fill_n(sign[0], sign.room, T(1));

@@ -171,10 +171,10 @@ template <class T, class F> HWY_INLINE T fold(const Lanes<T>& a, F&& f)
 /// That of each of eight.
 template <class T, class F> HWY_INLINE Lanes<T> fold(const Lanes<T> (&x)[block_lanes], F&& f)
 {
-    Lanes<T> out;
 #if HWY_TARGET != HWY_SCALAR
     using D = typename Lanes<T>::D;
     const D d;
+    [[maybe_unused]] Lanes<T> out;
     if constexpr (sizeof(T) == 4 && Lanes<T>::width == 8) {
         const hn::Repartition<double, D> pairs;
         auto halves = [&](std::size_t a, std::size_t b) CINCH_FLATTEN {
@@ -260,6 +260,48 @@ template <class T, std::size_t kAxes> HWY_INLINE void sum(const Lanes<T> (&x)[2]
 template <class T, std::size_t kAxes> HWY_INLINE void greatest(const Lanes<T> (&x)[2][kAxes], PerSide<T, kAxes>& out)
 {
     fold(x, out, [](auto a, auto b) { return hn::Max(a, b); });
+}
+/// The two greatest of each lane on the way, of each side and axis in the end.
+template <class T, std::size_t kAxes> struct TwoGreatest {
+    Lanes<T> first[2][kAxes], other[2][kAxes];
+
+    HWY_INLINE TwoGreatest()
+    {
+        for (std::size_t s = 0; s < 2; ++s)
+            for (std::size_t a = 0; a < kAxes; ++a)
+                first[s][a] = other[s][a] = Lanes<T>::all(-infinity_of<T>);
+    }
+    HWY_INLINE void take(std::size_t s, std::size_t a, const Lanes<T>& x)
+    {
+        other[s][a] = greater(less(x, first[s][a]), other[s][a]);
+        first[s][a] = greater(x, first[s][a]);
+    }
+    /// Of one value itself.
+    void second(std::size_t count, PerSide<T, kAxes>& out) const
+    {
+        for (std::size_t s = 0; s < 2; ++s)
+            for (std::size_t a = 0; a < kAxes; ++a) {
+                T x[2 * block_lanes];
+                first[s][a].store(x);
+                other[s][a].store(x + block_lanes);
+                T top = -infinity_of<T>, second = top;
+                for (const T value : x) {
+                    const T less = value < top ? value : top;
+                    second = less > second ? less : second;
+                    top = value > top ? value : top;
+                }
+                out[s][a] = count > 1 ? second : top;
+            }
+        out.repeat_last();
+    }
+};
+/// 0, and −∞ where the last block repeats its last node.
+template <class T> HWY_INLINE Lanes<T> repeated_lanes(const PackedBv<T>& bv)
+{
+    T repeats[block_lanes];
+    for (std::size_t n = 0; n < block_lanes; ++n)
+        repeats[n] = n < (bv.count - 1) % block_lanes + 1 ? T(0) : -infinity_of<T>;
+    return Lanes<T>::load(repeats);
 }
 template <class T, std::size_t kAxes> HWY_INLINE void fill(PerSide<T, kAxes>& out, T value)
 {

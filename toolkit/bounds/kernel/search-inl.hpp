@@ -77,7 +77,7 @@ template <class T, std::size_t kAxes> void select_best(const PackedBv<T>& bv, co
     lambda.repeat_last();
 }
 
-/// Whether no side of the bound may exceed Eq. 12 clearly.
+/// Whether no side of the bound exceeds its floor, hence Eq. 12, clearly.
 template <class T, std::size_t kAxes>
 bool is_close(const KernelInput<T>& in, const PackedBv<T>& bv, const Bound<T, kAxes>& bound)
 {
@@ -91,14 +91,11 @@ bool is_close(const KernelInput<T>& in, const PackedBv<T>& bv, const Bound<T, kA
     return close;
 }
 
-/// λ near the best one by at most in.passes evaluations of D, which is evaluate<with its mass>(λ, D). The kind local,
-/// whose best D is at most Eq. 12, goes on a while where it has a guard, until it is close to its floors, which are
-/// those of its probes and its tangents.
+/// λ near the best one by at most in.passes evaluations of D, which is evaluate<with its mass>(λ, D).
 template <class T, std::size_t kAxes, class Evaluate> void search(const KernelInput<T>& in, const PackedBv<T>& bv,
                                                                   const Extrema<T, kAxes>& e, T* remembered,
                                                                   Bound<T, kAxes>& out, const Evaluate& evaluate)
 {
-    const bool guarded = bv.guard != 0 && bv.kind == Method::local;
     PerSide<T, kAxes> lambda;
     for (std::size_t i = 0; i < 2 * lambda.room; i += block_lanes) {
         const auto mean = lanes_of(e.mean, i);
@@ -108,26 +105,14 @@ template <class T, std::size_t kAxes, class Evaluate> void search(const KernelIn
         for (std::size_t a = 0; a < kAxes; ++a)
             if (std::isfinite(remembered[2 * (s * kAxes + a)]))
                 lambda[s][a] = remembered[2 * (s * kAxes + a)];
-    if (guarded) {
-        if (bv.probed) {
-            Sides<T, kAxes> floor;
-            floor_of_probes<T, kAxes>(bv, *in.maps, in.node.data() + bv.first_node, floor);
-            store<T, kAxes>(floor, out.floor);
-        } else {
-            fill(out.floor, -infinity_of<T>);
-        }
-    }
     Dual<T, kAxes> d;
     if (in.passes == 1 && !remembered) {
         evaluate.template operator()<false>(lambda, d);
         intersect<T, kAxes>(in, bv, e, lambda, d, out);
-        if (!guarded || is_close<T, kAxes>(in, bv, out))
-            return;
+        return;
     }
-    constexpr int most_passes = 3;
     std::optional<TangentSearch<T>> tangents[2][kAxes];
-    for (int pass = 0; pass < in.passes || (guarded && pass < most_passes && !is_close<T, kAxes>(in, bv, out));
-         ++pass) {
+    for (int pass = 0; pass < in.passes; ++pass) {
         evaluate.template operator()<true>(lambda, d);
         intersect<T, kAxes>(in, bv, e, lambda, d, out);
         for (std::size_t s = 0; s < 2; ++s)
@@ -137,8 +122,6 @@ template <class T, std::size_t kAxes, class Evaluate> void search(const KernelIn
                     tangents[s][a].emplace(lambda[s][a], parts, bv.sum_l, bv.sum_r, e.mean[s][a]);
                 const T here = lambda[s][a];
                 lambda[s][a] = tangents[s][a]->next(here, parts, bv.sum_l);
-                if (guarded)
-                    out.floor[s][a] = std::max(out.floor[s][a], tangents[s][a]->least());
                 if (remembered && pass + 1 == in.passes)
                     remember(here, lambda[s][a] - here, 1 - bv.sum_l - parts.mass, remembered + 2 * (s * kAxes + a));
             }
