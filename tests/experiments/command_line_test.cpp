@@ -34,14 +34,16 @@ TEST_CASE("help and version")
 
 TEST_CASE("numbers that are none, or out of range, are refused")
 {
-    for (const char* option : {"verify --support", "scaling --seconds", "simulate pile --step", "simulate pile --duration",
+    for (const char* option :
+         {"verify --support", "scaling --seconds", "simulate pile --step", "simulate pile --duration",
 #ifdef CINCH_EXACT
-                               "cost --seconds", "cost --duration", "fuzz --seconds"
+          "cost --seconds", "cost --duration", "fuzz --seconds"
 #endif
          })
         for (const char* value : {"nan", "inf", "-1", "1e400", "two"}) {
             const std::string arguments = std::string(option) + " " + value;
-            check_refused(arguments, arguments.substr(arguments.find("--"), arguments.rfind(' ') - arguments.find("--")));
+            check_refused(arguments,
+                          arguments.substr(arguments.find("--"), arguments.rfind(' ') - arguments.find("--")));
         }
 }
 
