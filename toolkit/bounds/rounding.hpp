@@ -108,13 +108,12 @@ inline constexpr double kernel_error_constant = 48;
 template <class T>
 inline constexpr double magnitude_limit = static_cast<double>(std::numeric_limits<T>::max()) * 0x1p-24;
 
-/// What the kernels may lose on one simulation node, evaluation of vertices aside: `magnitude` is N_j, `extent` is ΣX,
-/// `lost` the error of d beyond u|d|.
-template <class T> inline double node_error(double magnitude, double extent, double lost) noexcept
-{
-    return succ(kernel_error_constant * static_cast<double>(unit_roundoff_of<T>) * magnitude +
-                128 * static_cast<double>(smallest_subnormal_of<T>) * (1 + extent) + 4 * lost);
-}
+/// What the kernels may lose on one simulation node, evaluation of vertices aside, is at most
+///   node_rounding·N_j + node_underflow·(1 + ΣX) + 4·lost,   lost the error of d beyond u|d|
+/// (kernel/project_kernel.cpp).
+template <class T>
+inline constexpr double node_rounding = kernel_error_constant* static_cast<double>(unit_roundoff_of<T>);
+template <class T> inline constexpr double node_underflow = 128 * static_cast<double>(smallest_subnormal_of<T>);
 
 /// The kernels add in 8 virtual lanes, node j in lane j mod 8, and then in a tree: a term of n passes at most this many
 /// roundings.

@@ -55,7 +55,7 @@ template <class T, std::size_t kAxes> void bound_by_rows(const KernelInput<T>& i
                              });
             for (std::size_t s = 0; s < 2; ++s)
                 for (std::size_t c = 0; c < chunks; ++c)
-                    bound.chunk[s][c] = Rows<T>::each_row(out.value[s] + 4 * c);
+                    bound.chunk[s][c] = each_row<T>(out.value[s] + 4 * c);
         }
         for (std::size_t c = 0; c < chunks; ++c)
             add_rest_support(bv, point, reference.chunk[c], reference.chunk[c], in.rounding, bound.chunk[0][c],

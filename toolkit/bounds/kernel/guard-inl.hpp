@@ -34,7 +34,7 @@ inline constexpr double clearly_looser = 0.005;
 template <class T, std::size_t kAxes>
 HWY_INLINE void floor_of_mean(const PackedBv<T>& bv, const AxisMap<T, kAxes>& mean, Sides<T, kAxes>& floor)
 {
-    const auto centre = Rows<T>::each_row(bv.centre), half = Rows<T>::each_row(bv.half);
+    const auto centre = each_row<T>(bv.centre), half = each_row<T>(bv.half);
     for (std::size_t c = 0; c < row_chunks<kAxes>; ++c) {
         const auto position = mean.chunk[c] * centre, radius = magnitude(mean.chunk[c]) * half;
         const auto reach = row_sums(radius + position, radius - position);

@@ -7,15 +7,17 @@
 #define CINCH_LANES_INL
 #endif
 
-#include <cmath>
-#include <limits>
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
 
 #include <hwy/highway.h>
 
 #include "toolkit/bounds/kernel/extrema-inl.hpp"
+#include "toolkit/bounds/kernel/next-inl.hpp"
 #include "toolkit/bounds/packed_bv.hpp"
 #include "toolkit/bounds/projected_maps.hpp"
-#include "toolkit/bounds/rounding.hpp"
+#include "toolkit/deform/kernel/simd-inl.hpp"
 
 // On lambdas whose captures must stay in registers.
 #ifndef CINCH_FLATTEN
@@ -24,37 +26,10 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace cinch::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
-/// 8 virtual lanes of T, as however many vectors the target needs. What is done to them is the same, lane by lane,
-/// everywhere.
-template <class T> struct Lanes {
-    using D = hn::CappedTag<T, 32 / sizeof(T)>; // 256 bits at most
-    using V = hn::Vec<D>;
-    static constexpr std::size_t width = hn::MaxLanes(D()), vectors = block_lanes / width;
-
-    V v[vectors];
-
-    static HWY_INLINE Lanes load(const T* p)
-    {
-        Lanes x;
-        for (std::size_t i = 0; i < vectors; ++i)
-            x.v[i] = hn::LoadU(D(), p + i * width);
-        return x;
-    }
-    static HWY_INLINE Lanes all(T value)
-    {
-        Lanes x;
-        for (std::size_t i = 0; i < vectors; ++i)
-            x.v[i] = hn::Set(D(), value);
-        return x;
-    }
-    HWY_INLINE void store(T* p) const
-    {
-        for (std::size_t i = 0; i < vectors; ++i)
-            hn::StoreU(v[i], D(), p + i * width);
-    }
-};
+/// 8 virtual lanes of T, of 256 bits at most. NaN occurs only where the error of a simulation node is infinite, which
+/// decides the result.
+template <class T> using Lanes = Simd<T, block_lanes, 32>;
 
 template <class D, class V, class F> HWY_INLINE hn::TFromD<D> fold_vector(D, V v, [[maybe_unused]] F&& f)
 {
@@ -65,95 +40,6 @@ template <class D, class V, class F> HWY_INLINE hn::TFromD<D> fold_vector(D, V v
     }
 #endif
     return hn::GetLane(v);
-}
-
-template <class T, class F> HWY_INLINE Lanes<T> each(const Lanes<T>& a, F&& f)
-{
-    Lanes<T> x;
-    for (std::size_t i = 0; i < Lanes<T>::vectors; ++i)
-        x.v[i] = f(a.v[i]);
-    return x;
-}
-template <class T, class F> HWY_INLINE Lanes<T> each(const Lanes<T>& a, const Lanes<T>& b, F&& f)
-{
-    Lanes<T> x;
-    for (std::size_t i = 0; i < Lanes<T>::vectors; ++i)
-        x.v[i] = f(a.v[i], b.v[i]);
-    return x;
-}
-template <class T> HWY_INLINE Lanes<T> operator+(const Lanes<T>& a, const Lanes<T>& b)
-{
-    return each(a, b, [](auto x, auto y) { return hn::Add(x, y); });
-}
-template <class T> HWY_INLINE Lanes<T> operator-(const Lanes<T>& a, const Lanes<T>& b)
-{
-    return each(a, b, [](auto x, auto y) { return hn::Sub(x, y); });
-}
-template <class T> HWY_INLINE Lanes<T> operator*(const Lanes<T>& a, const Lanes<T>& b)
-{
-    return each(a, b, [](auto x, auto y) { return hn::Mul(x, y); });
-}
-template <class T> HWY_INLINE Lanes<T> operator/(const Lanes<T>& a, const Lanes<T>& b)
-{
-    return each(a, b, [](auto x, auto y) { return hn::Div(x, y); });
-}
-template <class T> HWY_INLINE Lanes<T> magnitude(const Lanes<T>& a)
-{
-    return each(a, [](auto x) { return hn::Abs(x); });
-}
-/// Of numbers; NaN occurs only where the node's error is infinite, which decides the result.
-template <class T> HWY_INLINE Lanes<T> greater(const Lanes<T>& a, const Lanes<T>& b)
-{
-    return each(a, b, [](auto x, auto y) { return hn::Max(x, y); });
-}
-template <class T> HWY_INLINE Lanes<T> less(const Lanes<T>& a, const Lanes<T>& b)
-{
-    return each(a, b, [](auto x, auto y) { return hn::Min(x, y); });
-}
-/// x where a > 0, else 0.
-template <class T> HWY_INLINE Lanes<T> where_positive(const Lanes<T>& a, const Lanes<T>& x)
-{
-    return each(a, x,
-                [](auto p, auto y) { return hn::IfThenElseZero(hn::Gt(p, hn::Zero(typename Lanes<T>::D())), y); });
-}
-
-/// a·b + c, rounded once: part of the definition of every result.
-template <class T> HWY_INLINE Lanes<T> fma(const Lanes<T>& a, const Lanes<T>& b, const Lanes<T>& c)
-{
-    Lanes<T> x;
-#if HWY_NATIVE_FMA
-    for (std::size_t i = 0; i < Lanes<T>::vectors; ++i)
-        x.v[i] = hn::MulAdd(a.v[i], b.v[i], c.v[i]);
-#else
-    T p[block_lanes], q[block_lanes], r[block_lanes];
-    a.store(p);
-    b.store(q);
-    c.store(r);
-    for (std::size_t i = 0; i < block_lanes; ++i)
-        r[i] = std::fma(p[i], q[i], r[i]);
-    x = Lanes<T>::load(r);
-#endif
-    return x;
-}
-
-/// succ of rounding.hpp.
-template <class T> HWY_INLINE Lanes<T> next(const Lanes<T>& x)
-{
-    constexpr T phi = unit_roundoff_of<T> * (1 + 2 * unit_roundoff_of<T>);
-    return x + (magnitude(x) * Lanes<T>::all(phi) + Lanes<T>::all(smallest_subnormal_of<T>));
-}
-/// x where x < y, else y: y where x is not a number.
-template <class T> HWY_INLINE Lanes<T> lesser(const Lanes<T>& x, const Lanes<T>& y)
-{
-    return each(x, y, [](auto a, auto b) { return hn::IfThenElse(hn::Lt(a, b), a, b); });
-}
-/// Whether every lane of x is at most that of y, and all are numbers.
-template <class T> HWY_INLINE bool at_most(const Lanes<T>& x, const Lanes<T>& y)
-{
-    bool all = true;
-    for (std::size_t i = 0; i < Lanes<T>::vectors; ++i)
-        all &= hn::AllTrue(typename Lanes<T>::D(), hn::Le(x.v[i], y.v[i]));
-    return all;
 }
 
 /// Halves upon each other until one value is left: lanes (0, 4), (1, 5), (2, 6), (3, 7), then (0, 2), (1, 3), then the

@@ -23,14 +23,14 @@ void linear(const PackedBv<T>& bv, const ProjectedMaps<T>& maps, const std::uint
 {
     constexpr std::size_t stride = PackedBv<T>::values(Method::linear); // gradient (3), residual, moment (3), mean
     mean_map<T, kAxes>(bv, maps, node, value, stride, 7, mean, error);
-    const auto z = Rows<T>::each_row(bv.pivot);
+    const auto z = each_row<T>(bv.pivot);
     for (std::size_t c = 0; c < row_chunks<kAxes>; ++c) {
         // Per row Σ P g, Σ |P| residual, and Σ |dq| moment; nodes alternately in two sums.
         Rows<T> direction[2] = {Rows<T>::all(0), Rows<T>::all(0)}, moment[2] = {direction[0], direction[0]};
         auto add = [&](std::size_t j, std::size_t to) HWY_ATTR {
             const auto d = Rows<T>::load(map_of<T, kAxes>(maps, node[j]) + 16 * c) - mean.chunk[c], p = row_sum(d * z);
-            direction[to] = fma(with_fourth(p, magnitude(p)), Rows<T>::each_row(value + j * stride), direction[to]);
-            moment[to] = fma(magnitude(d), Rows<T>::each_row(value + j * stride + 4), moment[to]);
+            direction[to] = fma(with_fourth(p, magnitude(p)), each_row<T>(value + j * stride), direction[to]);
+            moment[to] = fma(magnitude(d), each_row<T>(value + j * stride + 4), moment[to]);
         };
         std::size_t j = 0;
         for (; j + 1 < bv.count; j += 2) {

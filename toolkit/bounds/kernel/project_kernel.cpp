@@ -14,27 +14,11 @@
 
 #include <hwy/highway.h>
 
+#include "toolkit/bounds/kernel/next-inl.hpp"
 #include "toolkit/deform/kernel/quad-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace cinch::HWY_NAMESPACE {
-
-HWY_INLINE Quad absolute(const Quad& a)
-{
-    return each(a, a, [](auto x, auto) { return hn::Abs(x); });
-}
-HWY_INLINE Quad greater(const Quad& a, const Quad& b)
-{
-    return each(a, b, [](auto x, auto y) { return hn::Max(x, y); });
-}
-HWY_INLINE Quad square_root(const Quad& a)
-{
-    return each(a, a, [](auto x, auto) { return hn::Sqrt(x); });
-}
-HWY_INLINE Quad next(const Quad& x) // succ of rounding.hpp
-{
-    return x + (times(absolute(x), unit_roundoff * (1 + 2 * unit_roundoff)) + Quad::all(smallest_subnormal));
-}
 
 // A row of A, and d = A·o + t − O. The compensated sum [Ogita, Rump, Oishi 2005, Dot2] is within u|d| + 2^-98·(Σ|A o| +
 // |t| + |O|); for o = 0 so is fl(t − O), without the second term.
@@ -44,11 +28,11 @@ struct Row {
 
 HWY_INLINE void shift(Row& row, const Vec3& rest_origin, double origin)
 {
-    row.lost = Quad::zero();
+    row.lost = Quad::all(0);
     row.d = row.t - Quad::all(origin);
     if (rest_origin[0] == 0 && rest_origin[1] == 0 && rest_origin[2] == 0)
         return;
-    Quad sum = row.t, compensation = Quad::zero(), magnitude = absolute(row.t) + Quad::all(std::abs(origin));
+    Quad sum = row.t, compensation = Quad::all(0), size = magnitude(row.t) + Quad::all(std::abs(origin));
     auto add = [&](const Quad& x) HWY_ATTR { // TwoSum
         const Quad after = sum + x, part = after - sum;
         compensation = compensation + ((sum - (after - part)) + (x - part));
@@ -58,11 +42,11 @@ HWY_INLINE void shift(Row& row, const Vec3& rest_origin, double origin)
     for (int s = 0; s < 3; ++s) {
         const Quad o = Quad::all(rest_origin[s]), product = row.a[s] * o;
         add(product);
-        compensation = compensation + multiply_add(row.a[s], o, Quad::zero() - product);
-        magnitude = magnitude + absolute(product);
+        compensation = compensation + fma(row.a[s], o, Quad::all(0) - product);
+        size = size + magnitude(product);
     }
     row.d = sum + compensation;
-    row.lost = times(magnitude, 0x1p-98);
+    row.lost = times(size, 0x1p-98);
 }
 
 /// To T, and, rounded up, to at least x ≥ 0.
@@ -95,13 +79,13 @@ template <class T> HWY_INLINE void store_up(const Quad& x, T* p)
 // At least ‖(x, y, z)‖ of these numbers and of what becomes of them in T: squares neither overflow nor vanish.
 template <class T> HWY_INLINE Quad norm(const Quad& x, const Quad& y, const Quad& z)
 {
-    const Quad most = greater(greater(absolute(x), absolute(y)), absolute(z));
-    const Quad root = square_root((x * x + y * y) + z * z), sum = (absolute(x) + absolute(y)) + absolute(z);
+    const Quad most = greater(greater(magnitude(x), magnitude(y)), magnitude(z));
+    const Quad length = root((x * x + y * y) + z * z), sum = (magnitude(x) + magnitude(y)) + magnitude(z);
     Quad out;
     for (std::size_t i = 0; i < Quad::vectors; ++i) {
         const typename Quad::D d;
         const auto safe = hn::And(hn::Gt(most.v[i], hn::Set(d, 0x1p-500)), hn::Lt(most.v[i], hn::Set(d, 0x1p500)));
-        out.v[i] = hn::IfThenElse(safe, root.v[i], sum.v[i]);
+        out.v[i] = hn::IfThenElse(safe, length.v[i], sum.v[i]);
     }
     // 3 products, 2 sums and a root: 4 roundings and half of one; then each number by u in T, or by underflow.
     return times(out, 1 + 8 * unit_roundoff + 2 * static_cast<double>(unit_roundoff_of<T>)) +
@@ -115,11 +99,10 @@ template <class T> ProjectionReport project(std::span<const AffineMap> maps, con
     const double extent = rest.about_origin.sum();
     const double limit =
         rest.about_origin.maxCoeff() <= magnitude_limit<T> ? magnitude_limit<T> : -1; // rest data may overflow T
-    const Quad node_underflow = Quad::all(128 * static_cast<double>(smallest_subnormal_of<T>) * (1 + extent));
-    const double node_rounding = kernel_error_constant * static_cast<double>(unit_roundoff_of<T>),
-                 evaluation = (rest.influences + 8) * unit_roundoff;
-    const Quad evaluation_underflow = Quad::all(8 * rest.influences * smallest_subnormal);
-    Quad greatest_vertex_error = Quad::zero();
+    const Quad underflow = Quad::all(node_underflow<T> * (1 + extent)),
+               evaluation_underflow = Quad::all(smallest_times<double>(8 * static_cast<std::size_t>(rest.influences)));
+    const double evaluation = (rest.influences + 8) * unit_roundoff;
+    Quad greatest_vertex_error = Quad::all(0);
     ProjectionReport report;
     for (std::size_t first = 0; first < maps.size(); first += 4) {
         const std::size_t count = std::min<std::size_t>(4, maps.size() - first);
@@ -131,43 +114,43 @@ template <class T> ProjectionReport project(std::span<const AffineMap> maps, con
         }
         Row row[3];
         for (std::size_t r = 0; r < 3; ++r) {
-            Quad columns[4] = {Quad::load_unaligned(own[0]->m[r]), Quad::load_unaligned(own[1]->m[r]),
-                               Quad::load_unaligned(own[2]->m[r]), Quad::load_unaligned(own[3]->m[r])};
+            Quad columns[4] = {Quad::load(own[0]->m[r]), Quad::load(own[1]->m[r]), Quad::load(own[2]->m[r]),
+                               Quad::load(own[3]->m[r])};
             transpose(columns);
             for (std::size_t s = 0; s < 3; ++s)
                 row[r].a[s] = columns[s];
             row[r].t = columns[3];
             shift(row[r], rest.origin, origin[static_cast<int>(r)]);
         }
-        Quad error = Quad::zero(), vertex_error = Quad::zero(), everything = Quad::zero();
+        Quad error = Quad::all(0), vertex_error = Quad::all(0), everything = Quad::all(0);
         for (std::size_t a = 0; a < axes.size(); ++a) {
-            Quad along[4], magnitude[4], lost = Quad::zero(), world = Quad::zero();
+            Quad along[4], size[4], lost = Quad::all(0), world = Quad::all(0);
             for (std::size_t s = 0; s < 4; ++s)
-                along[s] = magnitude[s] = Quad::zero();
+                along[s] = size[s] = Quad::all(0);
             for (std::size_t r = 0; r < 3; ++r) {
                 if (axes[a][r] == 0)
                     continue;
                 for (std::size_t s = 0; s < 4; ++s) {
                     const Quad& x = s < 3 ? row[r].a[s] : row[r].d;
                     along[s] = axes[a][r] > 0 ? along[s] + x : along[s] - x;
-                    magnitude[s] = magnitude[s] + absolute(x);
+                    size[s] = size[s] + magnitude(x);
                 }
                 lost = lost + row[r].lost;
-                world = world + absolute(row[r].t);
+                world = world + magnitude(row[r].t);
             }
-            Quad about = magnitude[3];
+            Quad about = size[3];
             for (std::size_t s = 0; s < 3; ++s) {
-                about = about + times(magnitude[s], rest.about_origin[static_cast<int>(s)]);
-                world = world + times(magnitude[s], rest.absolute[static_cast<int>(s)]);
+                about = about + times(size[s], rest.about_origin[static_cast<int>(s)]);
+                world = world + times(size[s], rest.absolute[static_cast<int>(s)]);
             }
             // What it meets may be 0, which would hide a component from `about`.
-            everything = everything + (about + ((magnitude[0] + magnitude[1]) + magnitude[2]));
+            everything = everything + (about + ((size[0] + size[1]) + size[2]));
             HWY_ALIGN T length[4];
             store_up<T>(norm<T>(along[0], along[1], along[2]), length);
             const Quad computed = next(times(world, evaluation) + evaluation_underflow); // evaluation_error
             const Quad lost_4 = times(lost, 4);
-            error = greater(next((times(about, node_rounding) + node_underflow) + lost_4) + computed,
-                            error); // node_error + evaluation_error
+            error = greater(next((times(about, node_rounding<T>) + underflow) + lost_4) + computed,
+                            error); // of the node, and evaluation_error
             vertex_error = greater(next(lost_4 + computed), vertex_error);
             transpose(along);
             for (std::size_t i = 0; i < 4; ++i) {

@@ -7,146 +7,55 @@
 #define CINCH_ROWS_INL
 #endif
 
-#include <cmath>
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <utility>
 
 #include <hwy/highway.h>
 
 #include "toolkit/bounds/kernel/extrema-inl.hpp"
+#include "toolkit/bounds/kernel/next-inl.hpp"
 #include "toolkit/bounds/packed_bv.hpp"
 #include "toolkit/bounds/projected_maps.hpp"
-#include "toolkit/bounds/rounding.hpp"
+#include "toolkit/deform/kernel/simd-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace cinch::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
-/// 4 rows of 4 values of T, as however many vectors the target needs: of a projected map the rows q₀ q₁ q₂ θ of four
-/// axes. For BVs of few simulation nodes, which it takes as they stand. What is done is the same, lane by lane,
-/// everywhere.
-template <class T> struct Rows {
-    using D = hn::CappedTag<T, sizeof(T) == 4 ? 16 : 4>;
-    using V = hn::Vec<D>;
-    static constexpr std::size_t width = hn::MaxLanes(D()), vectors = 16 / width;
+/// 4 rows of 4 values of T: of a projected map the rows q₀ q₁ q₂ θ of four axes. For BVs of few simulation nodes, which
+/// it takes as they stand.
+template <class T> using Rows = Simd<T, 16, (sizeof(T) == 4 ? 64 : 32)>;
 
-    V v[vectors];
-
-    static HWY_INLINE Rows load(const T* p)
-    {
-        Rows x;
-        for (std::size_t i = 0; i < vectors; ++i)
-            x.v[i] = hn::LoadU(D(), p + i * width);
-        return x;
-    }
-    static HWY_INLINE Rows all(T value)
-    {
-        Rows x;
-        for (std::size_t i = 0; i < vectors; ++i)
-            x.v[i] = hn::Set(D(), value);
-        return x;
-    }
-    /// The same four values in every row.
-    static HWY_INLINE Rows each_row(const T* p)
-    {
-        Rows x;
-        for (std::size_t i = 0; i < vectors; ++i) {
-            if constexpr (width == 1)
-                x.v[i] = hn::Set(D(), p[i % 4]);
-            else if constexpr (sizeof(T) == 4)
-                x.v[i] = hn::LoadDup128(D(), p);
-            else
-                x.v[i] = hn::LoadU(D(), p + i * width % 4);
-        }
-        return x;
-    }
-    /// The a-th of four values all over row a.
-    static HWY_INLINE Rows each_column(const T* p)
-    {
-        Rows x;
+/// The same four values in every row.
+template <class T> HWY_INLINE Rows<T> each_row(const T* p) { return Rows<T>::fours(p); }
+/// The a-th of four values all over row a.
+template <class T> HWY_INLINE Rows<T> each_column(const T* p)
+{
+    using D = typename Rows<T>::D;
+    [[maybe_unused]] constexpr std::size_t width = Rows<T>::width, vectors = Rows<T>::vectors;
+    Rows<T> x;
 #if HWY_TARGET != HWY_SCALAR
-        if constexpr (width == 16) {
-            HWY_ALIGN constexpr std::int32_t column[16] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
-            x.v[0] = hn::TableLookupLanes(hn::LoadDup128(D(), p), hn::SetTableIndices(D(), column));
-            return x;
-        } else if constexpr (width == 8) {
-            const hn::Half<D> half;
-            for (std::size_t i = 0; i < vectors; ++i)
-                x.v[i] = hn::Combine(D(), hn::Set(half, p[2 * i + 1]), hn::Set(half, p[2 * i]));
-            return x;
-        }
-#endif
-        for (std::size_t i = 0; i < vectors; ++i) // no vector has more than a row
-            x.v[i] = hn::Set(D(), p[i * width / 4]);
+    if constexpr (width == 16) {
+        HWY_ALIGN constexpr std::int32_t column[16] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
+        x.v[0] = hn::TableLookupLanes(hn::LoadDup128(D(), p), hn::SetTableIndices(D(), column));
+        return x;
+    } else if constexpr (width == 8) {
+        const hn::Half<D> half;
+        for (std::size_t i = 0; i < vectors; ++i)
+            x.v[i] = hn::Combine(D(), hn::Set(half, p[2 * i + 1]), hn::Set(half, p[2 * i]));
         return x;
     }
-    HWY_INLINE void store(T* p) const
-    {
-        for (std::size_t i = 0; i < vectors; ++i)
-            hn::StoreU(v[i], D(), p + i * width);
-    }
-};
-
-template <class T, class F> HWY_INLINE Rows<T> each(const Rows<T>& a, F&& f)
-{
-    Rows<T> x;
-    for (std::size_t i = 0; i < Rows<T>::vectors; ++i)
-        x.v[i] = f(a.v[i]);
-    return x;
-}
-template <class T, class F> HWY_INLINE Rows<T> each(const Rows<T>& a, const Rows<T>& b, F&& f)
-{
-    Rows<T> x;
-    for (std::size_t i = 0; i < Rows<T>::vectors; ++i)
-        x.v[i] = f(a.v[i], b.v[i]);
-    return x;
-}
-template <class T> HWY_INLINE Rows<T> operator+(const Rows<T>& a, const Rows<T>& b)
-{
-    return each(a, b, [](auto x, auto y) { return hn::Add(x, y); });
-}
-template <class T> HWY_INLINE Rows<T> operator-(const Rows<T>& a, const Rows<T>& b)
-{
-    return each(a, b, [](auto x, auto y) { return hn::Sub(x, y); });
-}
-template <class T> HWY_INLINE Rows<T> operator*(const Rows<T>& a, const Rows<T>& b)
-{
-    return each(a, b, [](auto x, auto y) { return hn::Mul(x, y); });
-}
-template <class T> HWY_INLINE Rows<T> magnitude(const Rows<T>& a)
-{
-    return each(a, [](auto x) { return hn::Abs(x); });
-}
-/// Of numbers, as in lanes-inl.hpp.
-template <class T> HWY_INLINE Rows<T> greater(const Rows<T>& a, const Rows<T>& b)
-{
-    return each(a, b, [](auto x, auto y) { return hn::Max(x, y); });
-}
-/// x where a > 0, else 0.
-template <class T> HWY_INLINE Rows<T> where_positive(const Rows<T>& a, const Rows<T>& x)
-{
-    return each(a, x, [](auto p, auto y) { return hn::IfThenElseZero(hn::Gt(p, hn::Zero(typename Rows<T>::D())), y); });
-}
-
-/// a·b + c, rounded once: part of the definition of every result.
-template <class T> HWY_INLINE Rows<T> fma(const Rows<T>& a, const Rows<T>& b, const Rows<T>& c)
-{
-    Rows<T> x;
-    for (std::size_t i = 0; i < Rows<T>::vectors; ++i)
-#if HWY_NATIVE_FMA
-        x.v[i] = hn::MulAdd(a.v[i], b.v[i], c.v[i]);
-#else // the emulation would round twice
-        x.v[i] =
-            hn::Set(typename Rows<T>::D(), std::fma(hn::GetLane(a.v[i]), hn::GetLane(b.v[i]), hn::GetLane(c.v[i])));
-    static_assert(Rows<T>::width == 1);
 #endif
+    for (std::size_t i = 0; i < vectors; ++i) // no vector has more than a row
+        x.v[i] = hn::Set(D(), p[i * width / 4]);
     return x;
 }
-
 /// x, with the fourth lane of every row from y.
 template <class T> HWY_INLINE Rows<T> with_fourth(const Rows<T>& x, const Rows<T>& y)
 {
     HWY_ALIGN static constexpr T fourth[4] = {0, 0, 0, 1};
-    const auto where = Rows<T>::each_row(fourth);
+    const auto where = each_row<T>(fourth);
     Rows<T> out;
     for (std::size_t i = 0; i < Rows<T>::vectors; ++i)
         out.v[i] = hn::IfThenElse(hn::Gt(where.v[i], hn::Zero(typename Rows<T>::D())), y.v[i], x.v[i]);
@@ -256,22 +165,10 @@ template <class T> HWY_INLINE Rows<T> column_greatest(const Rows<T>& x)
     return Rows<T>::load(lane);
 }
 
-/// succ of rounding.hpp.
-template <class T> HWY_INLINE Rows<T> next(const Rows<T>& x)
-{
-    constexpr T phi = unit_roundoff_of<T> * (1 + 2 * unit_roundoff_of<T>);
-    return x + (magnitude(x) * Rows<T>::all(phi) + Rows<T>::all(smallest_subnormal_of<T>));
-}
-/// That, where results are to be proven.
+/// The next one up, where results are to be proven.
 template <class T> HWY_INLINE Rows<T> up(const Rows<T>& x, Rounding rounding)
 {
     return rounding == Rounding::proven ? next(x) : x;
-}
-
-/// x where x < y, else y: y where x is not a number.
-template <class T> HWY_INLINE Rows<T> lesser(const Rows<T>& x, const Rows<T>& y)
-{
-    return each(x, y, [](auto a, auto b) { return hn::IfThenElse(hn::Lt(a, b), a, b); });
 }
 
 /// 4 rows of a node's projected map, from axis 4·chunk on; rows past the last axis are there but mean nothing.
@@ -325,14 +222,13 @@ template <class T> HWY_INLINE void add_rest_support(const PackedBv<T>& bv, const
                                                     const Rows<T>& direction, Rounding rounding, Rows<T>& along,
                                                     Rows<T>& against)
 {
-    const auto position = column<0>(row_sum(base * Rows<T>::each_row(bv.pivot)));
+    const auto position = column<0>(row_sum(base * each_row<T>(bv.pivot)));
     // Four points at a time, one in a row, with the axes in its lanes.
     const auto q0 = column<0>(direction), q1 = column<1>(direction), q2 = column<2>(direction), zero = Rows<T>::all(0);
     auto most = Rows<T>::all(-infinity_of<T>), most_against = most;
     for (std::size_t i = 0; i < quads_of(bv.points); ++i) {
         const T* y = point + 12 * i;
-        const auto reached =
-            fma(q0, Rows<T>::each_column(y), fma(q1, Rows<T>::each_column(y + 4), q2 * Rows<T>::each_column(y + 8)));
+        const auto reached = fma(q0, each_column<T>(y), fma(q1, each_column<T>(y + 4), q2 * each_column<T>(y + 8)));
         most = greater(reached, most);
         most_against = greater(zero - reached, most_against);
     }

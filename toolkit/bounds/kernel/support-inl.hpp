@@ -39,8 +39,8 @@ HWY_INLINE void support_extrema(const PackedBv<T>& bv, const ProjectedMaps<T>& m
         auto most = Rows<T>::all(-infinity_of<T>), mean = zero;
         for (std::size_t j = 0; j < bv.count; ++j, b += 16) {
             const auto d = Rows<T>::load(map_of<T, kAxes>(maps, node[j]) + 16 * c) - reference.chunk[c];
-            const auto position = d * with_fourth(Rows<T>::each_row(value + j * stride), one),
-                       radius = magnitude(d) * with_fourth(Rows<T>::each_row(value + j * stride + support_half), zero);
+            const auto position = d * with_fourth(each_row<T>(value + j * stride), one),
+                       radius = magnitude(d) * with_fourth(each_row<T>(value + j * stride + support_half), zero);
             const auto sides = row_sums(radius + position, radius - position);
             sides.store(b);
             most = greater(sides, most);

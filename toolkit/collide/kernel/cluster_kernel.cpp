@@ -75,11 +75,10 @@ HWY_INLINE Relative relative(const ClusterInput& in, const ClusterPair& pair, co
         out.shift[r] = between + in.shift[r];
         far = std::max(far, std::max(std::abs(between), std::abs(out.shift[r])));
     }
-    const auto shift = Four::load_unaligned(in.shift), shift_error = Four::all(in.shift_error),
-               start = Four::load_unaligned(a.reference), error = Four::all(a.error);
-    next(next(next(next(Four::load_unaligned(pair.dop_b) + shift) + shift_error) - start) + error).store(out.high);
-    (Four::all(0) -
-     next(next(next(next(Four::load_unaligned(pair.dop_b + in.side) - shift) + shift_error) + start) + error))
+    const auto shift = Four::load(in.shift), shift_error = Four::all(in.shift_error), start = Four::load(a.reference),
+               error = Four::all(a.error);
+    next(next(next(next(Four::load(pair.dop_b) + shift) + shift_error) - start) + error).store(out.high);
+    (Four::all(0) - next(next(next(next(Four::load(pair.dop_b + in.side) - shift) + shift_error) + start) + error))
         .store(out.low);
     out.error = succ(2 * unit_roundoff_of<float> * far + in.shift_error); // two roundings
     return out;
@@ -118,9 +117,9 @@ template <std::size_t L> void test_pair(const ClusterInput& in, const ClusterPai
     const float rounding = 2 * unit_roundoff_of<float> * b.furthest(); // of the sums with the shift
     const float error_b = succ(succ(place_b.error + to_b.error) + rounding);
     HWY_ALIGN float low[4], high[4];
-    const auto start = Wide<4>::load_unaligned(place_a.reference), error = Wide<4>::all(error_b);
-    next(next(Wide<4>::load_unaligned(pair.dop_a) - start) + error).store(high);
-    (Wide<4>::all(0) - next(next(Wide<4>::load_unaligned(pair.dop_a + in.side) + start) + error)).store(low);
+    const auto start = Wide<4>::load(place_a.reference), error = Wide<4>::all(error_b);
+    next(next(Wide<4>::load(pair.dop_a) - start) + error).store(high);
+    (Wide<4>::all(0) - next(next(Wide<4>::load(pair.dop_a + in.side) + start) + error)).store(low);
     const std::uint32_t of_b = b.meeting(low, high) & ((1u << pair.triangles_b) - 1);
     if (of_b == 0)
         return;

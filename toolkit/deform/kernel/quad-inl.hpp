@@ -7,89 +7,18 @@
 #define CINCH_QUAD_INL
 #endif
 
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
-#include <hwy/highway.h>
+#include "toolkit/deform/kernel/simd-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace cinch::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
-/// 4 doubles (x, y, z and a pad), as however many vectors the target needs. The same lane by lane everywhere.
-struct Quad {
-    using D = hn::CappedTag<double, 4>;
-    using V = hn::Vec<D>;
-    static constexpr std::size_t width = hn::MaxLanes(D()), vectors = 4 / width;
+/// 4 doubles (x, y, z and a pad).
+using Quad = Simd<double, 4>;
 
-    V v[vectors];
-
-    static HWY_INLINE Quad load(const double* p)
-    {
-        Quad q;
-        for (std::size_t i = 0; i < vectors; ++i)
-            q.v[i] = hn::Load(D(), p + i * width); // fields are aligned
-        return q;
-    }
-    static HWY_INLINE Quad load_unaligned(const double* p)
-    {
-        Quad q;
-        for (std::size_t i = 0; i < vectors; ++i)
-            q.v[i] = hn::LoadU(D(), p + i * width);
-        return q;
-    }
-    static HWY_INLINE Quad zero() { return all(0); }
-    static HWY_INLINE Quad all(double value)
-    {
-        Quad q;
-        for (std::size_t i = 0; i < vectors; ++i)
-            q.v[i] = hn::Set(D(), value);
-        return q;
-    }
-    HWY_INLINE void store(double* p) const
-    {
-        for (std::size_t i = 0; i < vectors; ++i)
-            hn::StoreU(v[i], D(), p + i * width);
-    }
-};
-template <class F> HWY_INLINE Quad each(const Quad& a, const Quad& b, F&& f)
-{
-    Quad q;
-    for (std::size_t i = 0; i < Quad::vectors; ++i)
-        q.v[i] = f(a.v[i], b.v[i]);
-    return q;
-}
-HWY_INLINE Quad operator+(const Quad& a, const Quad& b)
-{
-    return each(a, b, [](auto x, auto y) { return hn::Add(x, y); });
-}
-HWY_INLINE Quad operator-(const Quad& a, const Quad& b)
-{
-    return each(a, b, [](auto x, auto y) { return hn::Sub(x, y); });
-}
-HWY_INLINE Quad operator*(const Quad& a, const Quad& b)
-{
-    return each(a, b, [](auto x, auto y) { return hn::Mul(x, y); });
-}
-HWY_INLINE Quad operator/(const Quad& a, const Quad& b)
-{
-    return each(a, b, [](auto x, auto y) { return hn::Div(x, y); });
-}
 HWY_INLINE Quad times(const Quad& a, double s) { return a * Quad::all(s); }
-/// a b + c, rounded once.
-HWY_INLINE Quad multiply_add(const Quad& a, const Quad& b, const Quad& c)
-{
-    Quad q;
-    for (std::size_t i = 0; i < Quad::vectors; ++i)
-#if HWY_NATIVE_FMA
-        q.v[i] = hn::MulAdd(a.v[i], b.v[i], c.v[i]);
-#else // the emulation would round twice
-        q.v[i] = hn::Set(Quad::D(), std::fma(hn::GetLane(a.v[i]), hn::GetLane(b.v[i]), hn::GetLane(c.v[i])));
-    static_assert(Quad::width == 1);
-#endif
-    return q;
-}
 
 /// Lane k everywhere. From a register: the loads, not the arithmetic, are what limits these kernels.
 template <std::size_t k> HWY_INLINE Quad broadcast(const Quad& a)

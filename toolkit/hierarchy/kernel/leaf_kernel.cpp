@@ -73,7 +73,7 @@ HWY_INLINE NodeSums prepare_nodes(const LeafInput& in, const PackedLeaf& leaf, c
         float h, r;
         std::memcpy(&h, influence + 4 * j + 1, sizeof h);
         std::memcpy(&r, influence + 4 * j + 2, sizeof r);
-        const auto map = Record::load_unaligned(record), image = sum_of_fours(map * pivot);
+        const auto map = Record::load(record), image = sum_of_fours(map * pivot);
         if (j == 0)
             out.reference = image;
         const auto from_reference = image - out.reference, size = magnitude(map);

@@ -8,140 +8,22 @@
 #endif
 
 #include <bit>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
 #include <hwy/highway.h>
 
-#include "toolkit/bounds/rounding.hpp"
+#include "toolkit/bounds/kernel/next-inl.hpp"
+#include "toolkit/deform/kernel/simd-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace cinch::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
-/// L floats, one per vertex or triangle of a leaf, as however many vectors the target needs. The same lane by lane
-/// everywhere.
-template <std::size_t L> struct Wide {
-    using D = hn::CappedTag<float, L>;
-    using V = hn::Vec<D>;
-    static constexpr std::size_t width = hn::MaxLanes(D()), vectors = L / width;
-
-    V v[vectors];
-
-    static HWY_INLINE Wide load(const float* p) // aligned
-    {
-        Wide x;
-        for (std::size_t i = 0; i < vectors; ++i)
-            x.v[i] = hn::Load(D(), p + i * width);
-        return x;
-    }
-    static HWY_INLINE Wide load_unaligned(const float* p)
-    {
-        Wide x;
-        for (std::size_t i = 0; i < vectors; ++i)
-            x.v[i] = hn::LoadU(D(), p + i * width);
-        return x;
-    }
-    static HWY_INLINE Wide all(float value)
-    {
-        Wide x;
-        for (std::size_t i = 0; i < vectors; ++i)
-            x.v[i] = hn::Set(D(), value);
-        return x;
-    }
-    /// The same four values over and over.
-    static HWY_INLINE Wide fours(const float* p)
-    {
-        Wide x;
-        for (std::size_t i = 0; i < vectors; ++i) {
-            if constexpr (width == 1)
-                x.v[i] = hn::Set(D(), p[i % 4]);
-            else
-                x.v[i] = hn::LoadDup128(D(), p);
-        }
-        return x;
-    }
-    HWY_INLINE void store(float* p) const // aligned
-    {
-        for (std::size_t i = 0; i < vectors; ++i)
-            hn::Store(v[i], D(), p + i * width);
-    }
-};
-
-template <std::size_t L, class F> HWY_INLINE Wide<L> each(const Wide<L>& a, F&& f)
-{
-    Wide<L> x;
-    for (std::size_t i = 0; i < Wide<L>::vectors; ++i)
-        x.v[i] = f(a.v[i]);
-    return x;
-}
-template <std::size_t L, class F> HWY_INLINE Wide<L> each(const Wide<L>& a, const Wide<L>& b, F&& f)
-{
-    Wide<L> x;
-    for (std::size_t i = 0; i < Wide<L>::vectors; ++i)
-        x.v[i] = f(a.v[i], b.v[i]);
-    return x;
-}
-template <std::size_t L> HWY_INLINE Wide<L> operator+(const Wide<L>& a, const Wide<L>& b)
-{
-    return each(a, b, [](auto x, auto y) { return hn::Add(x, y); });
-}
-template <std::size_t L> HWY_INLINE Wide<L> operator-(const Wide<L>& a, const Wide<L>& b)
-{
-    return each(a, b, [](auto x, auto y) { return hn::Sub(x, y); });
-}
-template <std::size_t L> HWY_INLINE Wide<L> operator*(const Wide<L>& a, const Wide<L>& b)
-{
-    return each(a, b, [](auto x, auto y) { return hn::Mul(x, y); });
-}
-template <std::size_t L> HWY_INLINE Wide<L> magnitude(const Wide<L>& a)
-{
-    return each(a, [](auto x) { return hn::Abs(x); });
-}
-template <std::size_t L> HWY_INLINE Wide<L> root(const Wide<L>& a)
-{
-    return each(a, [](auto x) { return hn::Sqrt(x); });
-}
-template <std::size_t L> HWY_INLINE Wide<L> greater(const Wide<L>& a, const Wide<L>& b)
-{
-    return each(a, b, [](auto x, auto y) { return hn::Max(x, y); });
-}
-template <std::size_t L> HWY_INLINE Wide<L> less(const Wide<L>& a, const Wide<L>& b)
-{
-    return each(a, b, [](auto x, auto y) { return hn::Min(x, y); });
-}
-
-/// a·b + c, rounded once: part of the definition of every result.
-template <std::size_t L> HWY_INLINE Wide<L> fma(const Wide<L>& a, const Wide<L>& b, const Wide<L>& c)
-{
-    Wide<L> x;
-    for (std::size_t i = 0; i < Wide<L>::vectors; ++i)
-#if HWY_NATIVE_FMA
-        x.v[i] = hn::MulAdd(a.v[i], b.v[i], c.v[i]);
-#else // the emulation would round twice
-        x.v[i] =
-            hn::Set(typename Wide<L>::D(), std::fma(hn::GetLane(a.v[i]), hn::GetLane(b.v[i]), hn::GetLane(c.v[i])));
-    static_assert(Wide<L>::width == 1);
-#endif
-    return x;
-}
-/// a·b − c, rounded once.
-template <std::size_t L> HWY_INLINE Wide<L> fms(const Wide<L>& a, const Wide<L>& b, const Wide<L>& c)
-{
-    Wide<L> x;
-    for (std::size_t i = 0; i < Wide<L>::vectors; ++i)
-#if HWY_NATIVE_FMA
-        x.v[i] = hn::MulSub(a.v[i], b.v[i], c.v[i]);
-#else
-        x.v[i] =
-            hn::Set(typename Wide<L>::D(), std::fma(hn::GetLane(a.v[i]), hn::GetLane(b.v[i]), -hn::GetLane(c.v[i])));
-#endif
-    return x;
-}
+/// L floats, one per vertex or triangle of a leaf.
+template <std::size_t L> using Wide = Simd<float, L>;
 
 /// One bit per lane, as the target keeps them.
-template <std::size_t L> struct Lanes {
+template <std::size_t L> struct Mask {
     using D = typename Wide<L>::D;
 
     hn::Mask<D> v[Wide<L>::vectors];
@@ -162,16 +44,16 @@ template <std::size_t L> struct Lanes {
     }
 };
 /// Whether a > b; false for NaN.
-template <std::size_t L> HWY_INLINE Lanes<L> operator>(const Wide<L>& a, const Wide<L>& b)
+template <std::size_t L> HWY_INLINE Mask<L> operator>(const Wide<L>& a, const Wide<L>& b)
 {
-    Lanes<L> x;
+    Mask<L> x;
     for (std::size_t i = 0; i < Wide<L>::vectors; ++i)
         x.v[i] = hn::Gt(a.v[i], b.v[i]);
     return x;
 }
-template <std::size_t L> HWY_INLINE Lanes<L> operator|(const Lanes<L>& a, const Lanes<L>& b)
+template <std::size_t L> HWY_INLINE Mask<L> operator|(const Mask<L>& a, const Mask<L>& b)
 {
-    Lanes<L> x;
+    Mask<L> x;
     for (std::size_t i = 0; i < Wide<L>::vectors; ++i)
         x.v[i] = hn::Or(a.v[i], b.v[i]);
     return x;
@@ -180,13 +62,6 @@ template <std::size_t L> HWY_INLINE Lanes<L> operator|(const Lanes<L>& a, const 
 template <std::size_t L> HWY_INLINE std::uint32_t bits_where_greater(const Wide<L>& a, const Wide<L>& b)
 {
     return (a > b).bits();
-}
-
-/// succ of rounding.hpp.
-template <std::size_t L> HWY_INLINE Wide<L> next(const Wide<L>& x)
-{
-    constexpr float phi = unit_roundoff_of<float> * (1 + 2 * unit_roundoff_of<float>);
-    return x + (magnitude(x) * Wide<L>::all(phi) + Wide<L>::all(smallest_subnormal_of<float>));
 }
 
 /// a where the lane's bit is set, else b.

@@ -15,17 +15,16 @@ struct Columns {
     Quad column[3];
 
     static HWY_INLINE Columns load(const double* p) { return {{Quad::load(p), Quad::load(p + 4), Quad::load(p + 8)}}; }
-    static HWY_INLINE Columns zero() { return {{Quad::zero(), Quad::zero(), Quad::zero()}}; }
+    static HWY_INLINE Columns zero() { return {{Quad::all(0), Quad::all(0), Quad::all(0)}}; }
     HWY_INLINE void add_outer(const Quad& a, const Quad& b) // a bᵀ
     {
-        column[0] = multiply_add(a, broadcast<0>(b), column[0]);
-        column[1] = multiply_add(a, broadcast<1>(b), column[1]);
-        column[2] = multiply_add(a, broadcast<2>(b), column[2]);
+        column[0] = fma(a, broadcast<0>(b), column[0]);
+        column[1] = fma(a, broadcast<1>(b), column[1]);
+        column[2] = fma(a, broadcast<2>(b), column[2]);
     }
     HWY_INLINE Quad times(const Quad& b) const
     {
-        return multiply_add(column[2], broadcast<2>(b),
-                            multiply_add(column[1], broadcast<1>(b), column[0] * broadcast<0>(b)));
+        return fma(column[2], broadcast<2>(b), fma(column[1], broadcast<1>(b), column[0] * broadcast<0>(b)));
     }
 };
 
@@ -58,13 +57,13 @@ void scatter(const NeighbourLists& lists, const double* stress, const double* sp
     for (std::size_t i = 0; i + 1 < lists.row.size(); ++i) {
         const Columns s = Columns::load(stress + 12 * i);
         const Quad here = Quad::load(x + 4 * i), k = Quad::all(kSprings ? spring[i] : 0);
-        Quad sum = Quad::zero();
+        Quad sum = Quad::all(0);
         for (std::size_t e = lists.row[i]; e < lists.row[i + 1]; ++e) {
             const std::size_t j = 4 * std::size_t(node[e]);
             const Quad record = Quad::load(d + 4 * e);
             Quad t = s.times(record);
             if constexpr (kSprings) // towards i
-                t = multiply_add(k, broadcast<3>(record) * (here - Quad::load(x + j)), t);
+                t = fma(k, broadcast<3>(record) * (here - Quad::load(x + j)), t);
             (Quad::load(force + j) + t).store(force + j);
             sum = sum + t;
         }
@@ -82,16 +81,16 @@ double residual_energy(const NeighbourLists& lists, const double* offset, const 
                        const double* gradient)
 {
     const std::uint32_t* node = lists.node.data();
-    Quad energy = Quad::zero();
+    Quad energy = Quad::all(0);
     for (std::size_t i = 0; i + 1 < lists.row.size(); ++i) {
         const Quad here = Quad::load(x + 4 * i);
         const Columns g = Columns::load(gradient + 12 * i);
-        Quad sum = Quad::zero();
+        Quad sum = Quad::all(0);
         for (std::size_t e = lists.row[i]; e < lists.row[i + 1]; ++e) {
             const Quad r = (Quad::load(x + 4 * std::size_t(node[e])) - here) - g.times(Quad::load(offset + 4 * e));
-            sum = multiply_add(r * r, Quad::all(lists.record[4 * e + 3]), sum);
+            sum = fma(r * r, Quad::all(lists.record[4 * e + 3]), sum);
         }
-        energy = multiply_add(sum, Quad::all(spring[i]), energy);
+        energy = fma(sum, Quad::all(spring[i]), energy);
     }
     double parts[4];
     energy.store(parts);

@@ -28,7 +28,7 @@ void add_neo_hookean_stress(double mu, double lambda, const double* volume, std:
         for (std::size_t c = 0; c < 3; ++c) {
             Quad node[4];
             for (std::size_t lane = 0; lane < 4; ++lane)
-                node[lane] = lane < lanes ? Quad::load(strain + 12 * (first + lane) + 4 * c) : Quad::zero();
+                node[lane] = lane < lanes ? Quad::load(strain + 12 * (first + lane) + 4 * c) : Quad::all(0);
             transpose(node);
             for (std::size_t r = 0; r < 3; ++r)
                 h[3 * c + r] = node[r];
@@ -60,10 +60,9 @@ void add_neo_hookean_stress(double mu, double lambda, const double* volume, std:
                     p[k] = p[k] + (along + across);
             }
         for (std::size_t c = 0; c < 3; ++c) {
-            Quad node[4] = {Quad::zero(), Quad::zero(), Quad::zero(), Quad::zero()};
+            Quad node[4] = {Quad::all(0), Quad::all(0), Quad::all(0), Quad::all(0)};
             for (std::size_t r = 0; r < 3; ++r)
-                node[r] = multiply_add(turn[6 + r], p[3 * c + 2],
-                                       multiply_add(turn[3 + r], p[3 * c + 1], turn[r] * p[3 * c]));
+                node[r] = fma(turn[6 + r], p[3 * c + 2], fma(turn[3 + r], p[3 * c + 1], turn[r] * p[3 * c]));
             transpose(node);
             for (std::size_t lane = 0; lane < lanes; ++lane) {
                 double* column = stress + 12 * (first + lane) + 4 * c;
