@@ -4,6 +4,7 @@
 
 #include "cinch/bounds.hpp"
 #include "experiments/command_line.hpp"
+#include "experiments/command_line_options.hpp"
 #include "experiments/simulation/find_scene.hpp"
 #include "toolkit/surface/shapes.hpp"
 
