@@ -25,22 +25,20 @@ void add_scaling(CLI::App& app, ScalingOptions& o)
         ->option_text("X");
     command.add_option("--seed", o.seed, wrapped("seed of everything random [0]"))->option_text("N");
     add_output(command, o.output);
-    command.footer("Examples:\n"
-                   "  cinch scaling                        table and figures, about half a minute\n"
-                   "  cinch scaling --precision double --csv > table1.csv\n"
-                   "  cinch scaling --plot table1.svg\n"
-                   "  cinch scaling brain-pull             the simulated brain\n"
-                   "\n"
-                   "All methods take turns on one core. Exit status: 0 measured, 2 bad usage,\n"
-                   "130 interrupted.");
+    command.footer(R"(Examples:
+  cinch scaling                        table and figures, about half a minute
+  cinch scaling --precision double --csv > table1.csv
+  cinch scaling --plot table1.svg
+  cinch scaling brain-pull             the simulated brain
+
+All methods take turns on one core. Exit status: 0 measured, 2 bad usage,
+130 interrupted.)");
 }
 
 void add_simulate(CLI::App& app, SimulateOptions& o)
 {
     CLI::App& command = *app.add_subcommand("simulate", "run a scene with only the effects it names");
-    auto option = [&](const char* name, auto& value, const std::string& description) {
-        return command.add_option(name, value, wrapped(description));
-    };
+    const auto option = options_of(command);
     option("SCENE", o.scene, fmt::format("a scene ({}) or a file (.json)", fmt::join(shipped_scenes(), ", ")))
         ->option_text("");
     option("--nodes", o.changes.nodes, "simulation nodes per body, where they are sampled [as the scene says]")
@@ -75,27 +73,25 @@ void add_simulate(CLI::App& app, SimulateOptions& o)
     command.add_flag("--schema", o.schema,
                      wrapped("print the JSON schema of scenes, data/scenes/schema.json, instead of running one"));
     add_output(command, o.output, Draws::nothing);
-    command.footer("Examples:\n"
-                   "  cinch simulate brain-pull --explain\n"
-                   "  cinch simulate santa-ring-3 --frames ring.frames --checkpoint ring.state\n"
-                   "  cinch simulate santa-ring-3 --frames ring.frames --resume ring.state\n"
-                   "  cinch simulate twist-180 --meshes twist --mesh-format obj\n"
-                   "\n"
-                   "An implicit step is solved when no acceleration is off by more than 'tolerance'\n"
-                   "(of the scene's integrator, 1e-5) times the greatest one.\n"
-                   "\n"
-                   "Until a run is whole its frames stand in FILE.part, where --resume goes on.\n"
-                   "\n"
-                   "Exit status: 0 done, 1 a step could not be solved (the state before it is kept),\n"
-                   "2 bad usage or scene, 130 interrupted (what is done is kept).");
+    command.footer(R"(Examples:
+  cinch simulate brain-pull --explain
+  cinch simulate santa-ring-3 --frames ring.frames --checkpoint ring.state
+  cinch simulate santa-ring-3 --frames ring.frames --resume ring.state
+  cinch simulate twist-180 --meshes twist --mesh-format obj
+
+An implicit step is solved when no acceleration is off by more than 'tolerance'
+(of the scene's integrator, 1e-5) times the greatest one.
+
+Until a run is whole its frames stand in FILE.part, where --resume goes on.
+
+Exit status: 0 done, 1 a step could not be solved (the state before it is kept),
+2 bad usage or scene, 130 interrupted (what is done is kept).)");
 }
 
 void add_collide(CLI::App& app, CollideOptions& o)
 {
     CLI::App& command = *app.add_subcommand("collide", "collision detection (Tables 2 to 4, Fig. 7)");
-    auto option = [&](const char* name, auto& value, const std::string& description) {
-        return command.add_option(name, value, wrapped(description));
-    };
+    const auto option = options_of(command);
     option("SCENE", o.scenes,
            "scenes of several bodies, or .json files [the rings of Table 2, santa-ring-1 to -8, and fishes]")
         ->option_text("...");
@@ -125,16 +121,16 @@ void add_collide(CLI::App& app, CollideOptions& o)
             about += c == '\n' ? std::string("\n                ") : std::string(1, c);
         about += "\n";
     }
-    command.footer(about + "\n"
-                           "Examples:\n"
-                           "  cinch collide                          everything, about eleven minutes\n"
-                           "  cinch collide santa-ring-3 --backends cinch,refit-16,embree\n"
-                           "  cinch collide fishes --json > fishes.jsonl\n"
-                           "  cinch collide santa-ring-7 --cold --plot cold.svg\n"
-                           "\n"
-                           "All backends find all intersecting pairs of triangles, by the same exact test.\n"
-                           "Exit status: 0 done, 1 this project's own found different pairs, 2 bad usage or\n"
-                           "scene, 130 interrupted (results so far are printed).");
+    command.footer(about + R"(
+Examples:
+  cinch collide                          everything, about eleven minutes
+  cinch collide santa-ring-3 --backends cinch,refit-16,embree
+  cinch collide fishes --json > fishes.jsonl
+  cinch collide santa-ring-7 --cold --plot cold.svg
+
+All backends find all intersecting pairs of triangles, by the same exact test.
+Exit status: 0 done, 1 this project's own found different pairs, 2 bad usage or
+scene, 130 interrupted (results so far are printed).)");
 }
 
 #ifdef CINCH_EXACT
@@ -172,15 +168,15 @@ void add_tightness(CLI::App& app, TightnessOptions& o)
         ->check(CLI::Range(1, 1024))
         ->option_text("N");
     add_output(command, o.output);
-    command.footer("Without --motion a shape or mesh is measured under 'strong' and 'mild'.\n"
-                   "\n"
-                   "Examples:\n"
-                   "  cinch tightness                               the brain, about two minutes\n"
-                   "  cinch tightness hand.ply --nodes 200 --methods eq12,best --plot hand.svg\n"
-                   "  cinch tightness robot.glb --clip Robot_Dance --csv > robot.csv\n"
-                   "\n"
-                   "Exit status: 0 done, 1 a bound violated, 2 bad usage or input, 130 interrupted\n"
-                   "(results so far are printed).");
+    command.footer(R"(Without --motion a shape or mesh is measured under 'strong' and 'mild'.
+
+Examples:
+  cinch tightness                               the brain, about two minutes
+  cinch tightness hand.ply --nodes 200 --methods eq12,best --plot hand.svg
+  cinch tightness robot.glb --clip Robot_Dance --csv > robot.csv
+
+Exit status: 0 done, 1 a bound violated, 2 bad usage or input, 130 interrupted
+(results so far are printed).)");
 }
 
 void add_cost(CLI::App& app, CostOptions& o, CostSimulationOptions& s)
@@ -208,14 +204,14 @@ void add_cost(CLI::App& app, CostOptions& o, CostSimulationOptions& s)
     command.add_flag("!--this-input-only", o.all_scenes,
                      wrapped("the gap of the dual evaluation for the input alone, not for every shipped shape"));
     add_output(command, o.output);
-    command.footer("Examples:\n"
-                   "  cinch cost                             the brain; about a minute\n"
-                   "  cinch cost santa --kdops 6 --plot cost.svg\n"
-                   "  cinch cost robot.glb --this-input-only --json > cost.jsonl\n"
-                   "  cinch cost --simulation twist-180      what accuracy costs in simulation\n"
-                   "\n"
-                   "Exit status: 0 measured, 2 bad usage or input, 130 interrupted (results so far\n"
-                   "are printed).");
+    command.footer(R"(Examples:
+  cinch cost                             the brain; about a minute
+  cinch cost santa --kdops 6 --plot cost.svg
+  cinch cost robot.glb --this-input-only --json > cost.jsonl
+  cinch cost --simulation twist-180      what accuracy costs in simulation
+
+Exit status: 0 measured, 2 bad usage or input, 130 interrupted (results so far
+are printed).)");
 }
 #endif
 

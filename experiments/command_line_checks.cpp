@@ -16,9 +16,7 @@ void add_verify(CLI::App& app, VerifyOptions& o)
 {
     CLI::App& command = *app.add_subcommand("verify", "prove every bound in exact arithmetic");
     add_input(command, o.input);
-    auto option = [&](const char* name, auto& value, const std::string& description) {
-        return command.add_option(name, value, wrapped(description));
-    };
+    const auto option = options_of(command);
     add_methods(command, o.methods);
     add_arithmetic(command, o.precision, o.passes);
     option("--rest", o.rest_shape, "rest boxes of convex, eq12 and limited: aabb or obb [aabb]")
@@ -61,31 +59,29 @@ void add_verify(CLI::App& app, VerifyOptions& o)
                                       {"lower-h", Sabotage::lower_h},
                                       {"stale", Sabotage::stale}}))
         ->option_text("KIND");
-    command.footer("Examples:\n"
-                   "  cinch verify                               the 30,000-vertex brain, 509 nodes\n"
-                   "  cinch verify hand.ply --nodes 200          a mesh of yours, standard motion\n"
-                   "  cinch verify robot.glb --clip Robot_Dance  a skinned character\n"
-                   "  cinch verify rest.off --weights w.txt --transforms t.txt --json\n"
-                   "  cinch verify fish --certificate fish.jsonl.gz\n"
-                   "  cinch verify santa-ring-3 --update lazy    the bounds that collision reads\n"
-                   "\n"
-                   "Text form of weights and transforms ('#' starts a comment):\n"
-                   "  weights     'V J'; then per vertex 'n j1 w1 ... jn wn': nodes from 0, weights\n"
-                   "              >= 0, normalised on load\n"
-                   "  transforms  number of clips; per clip 'name K J', then K lines: time, and for\n"
-                   "              every node its row-major 3x4 matrix. Vertex k moves to the sum of\n"
-                   "              w_j M_j (x, y, z, 1).\n"
-                   "\n"
-                   "Exit status: 0 all proven, 1 a bound violated, 2 bad usage or input,\n"
-                   "130 interrupted (results so far are printed; a certificate is not written).");
+    command.footer(R"(Examples:
+  cinch verify                               the 30,000-vertex brain, 509 nodes
+  cinch verify hand.ply --nodes 200          a mesh of yours, standard motion
+  cinch verify robot.glb --clip Robot_Dance  a skinned character
+  cinch verify rest.off --weights w.txt --transforms t.txt --json
+  cinch verify fish --certificate fish.jsonl.gz
+  cinch verify santa-ring-3 --update lazy    the bounds that collision reads
+
+Text form of weights and transforms ('#' starts a comment):
+  weights     'V J'; then per vertex 'n j1 w1 ... jn wn': nodes from 0, weights
+              >= 0, normalised on load
+  transforms  number of clips; per clip 'name K J', then K lines: time, and for
+              every node its row-major 3x4 matrix. Vertex k moves to the sum of
+              w_j M_j (x, y, z, 1).
+
+Exit status: 0 all proven, 1 a bound violated, 2 bad usage or input,
+130 interrupted (results so far are printed; a certificate is not written).)");
 }
 
 void add_corners(CLI::App& app, CornersOptions& o)
 {
     CLI::App& command = *app.add_subcommand("corners", "true corners of a weight space, and maxima");
-    auto option = [&](const char* name, auto& value, const std::string& description) {
-        return command.add_option(name, value, wrapped(description));
-    };
+    const auto option = options_of(command);
     option("CASE", o.files, "case files, see below, or names of shipped cases (data/cases)")
         ->required()
         ->option_text("FILE...");
@@ -94,18 +90,18 @@ void add_corners(CLI::App& app, CornersOptions& o)
     option("--limit", o.limit, "most corners to list per file [all]")
         ->check(CLI::Range(1, std::numeric_limits<int>::max()))
         ->option_text("N");
-    command.footer("A case file is {\"n\":3,\"l\":[...],\"h\":[...],\"b\":[[...],...]}: weight intervals\n"
-                   "with 0 <= l <= h <= 1 and rows of extrema. Numbers are JSON numbers, or\n"
-                   "strings that are decimal or hexadecimal floating point (\"0x1.8p-1\").\n"
-                   "\n"
-                   "Examples:\n"
-                   "  cinch corners space.json          count, exact maximum, Eq. 12, bound per row\n"
-                   "  cinch corners *.json --json       the same as JSON Lines\n"
-                   "  cinch corners space.json --list --limit 10\n"
-                   "  cinch corners 038_hyper_n5        a case that comes with the program\n"
-                   "\n"
-                   "Exit status: 0 done, 1 a toolkit bound lies below the exact maximum, 2 bad\n"
-                   "usage or input (other files are still answered), 130 interrupted.");
+    command.footer(R"(A case file is {"n":3,"l":[...],"h":[...],"b":[[...],...]}: weight intervals
+with 0 <= l <= h <= 1 and rows of extrema. Numbers are JSON numbers, or
+strings that are decimal or hexadecimal floating point ("0x1.8p-1").
+
+Examples:
+  cinch corners space.json          count, exact maximum, Eq. 12, bound per row
+  cinch corners *.json --json       the same as JSON Lines
+  cinch corners space.json --list --limit 10
+  cinch corners 038_hyper_n5        a case that comes with the program
+
+Exit status: 0 done, 1 a toolkit bound lies below the exact maximum, 2 bad
+usage or input (other files are still answered), 130 interrupted.)");
 }
 
 void add_stability(CLI::App& app, StabilityOptions& o)
@@ -123,20 +119,18 @@ void add_stability(CLI::App& app, StabilityOptions& o)
                                      {"projection", Missing::projection}}))
         ->option_text("NAME");
     add_output(command, o.output, Draws::nothing);
-    command.footer("Examples:\n"
-                   "  cinch stability                       all cases, about ten seconds\n"
-                   "  cinch stability --case inverted,flat\n"
-                   "  cinch stability --without completion  what the safeguard is for\n"
-                   "\n"
-                   "Exit status: 0 all pass, 1 a case fails, 2 bad usage, 130 interrupted.");
+    command.footer(R"(Examples:
+  cinch stability                       all cases, about ten seconds
+  cinch stability --case inverted,flat
+  cinch stability --without completion  what the safeguard is for
+
+Exit status: 0 all pass, 1 a case fails, 2 bad usage, 130 interrupted.)");
 }
 
 void add_fuzz(CLI::App& app, FuzzOptions& o)
 {
     CLI::App& command = *app.add_subcommand("fuzz", "every method against the exact side, random cases");
-    auto option = [&](const char* name, auto& value, const std::string& description) {
-        return command.add_option(name, value, wrapped(description));
-    };
+    const auto option = options_of(command);
     option("--seconds", o.seconds, "stop after so many seconds; 0 runs nothing")
         ->check(within(0.0, 1e9))
         ->option_text("X");
@@ -183,14 +177,14 @@ void add_fuzz(CLI::App& app, FuzzOptions& o)
                                     {"sum-order", Defect::sum_order},
                                     {"small-box", Defect::small_box}}))
         ->option_text("KIND");
-    command.footer("Examples:\n"
-                   "  cinch fuzz --seconds 600                 ten minutes, all families\n"
-                   "  cinch fuzz --cases 1000000 --resume s    can be stopped and continued\n"
-                   "  cinch fuzz --shard 0/4 --seconds 600     one of four machines\n"
-                   "\n"
-                   "A failure is shrunk to the smallest case that still fails and saved as JSON.\n"
-                   "Exit status: 0 no violation, 1 a violation, 2 bad usage, 130 interrupted (the\n"
-                   "summary is printed).");
+    command.footer(R"(Examples:
+  cinch fuzz --seconds 600                 ten minutes, all families
+  cinch fuzz --cases 1000000 --resume s    can be stopped and continued
+  cinch fuzz --shard 0/4 --seconds 600     one of four machines
+
+A failure is shrunk to the smallest case that still fails and saved as JSON.
+Exit status: 0 no violation, 1 a violation, 2 bad usage, 130 interrupted (the
+summary is printed).)");
 }
 
 } // namespace cinch

@@ -73,9 +73,7 @@ void add_input(CLI::App& command, InputOptions& o)
                         "a shape ({}), a scene ({}, or a .json file), a mesh ({}) or a skinned character (.glb, .gltf)",
                         fmt::join(shape_names(), ", "), fmt::join(shipped_scenes(), ", "), mesh_extensions())))
         ->option_text("[brain]");
-    auto option = [&](const char* name, auto& value, const std::string& description) {
-        return command.add_option(name, value, wrapped(description));
-    };
+    const auto option = options_of(command);
     option("--nodes", o.nodes,
            "simulation nodes sampled in the volume [the paper's number for a shape, 100 for a mesh]")
         ->check(CLI::Range(1, 100000))

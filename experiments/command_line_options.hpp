@@ -17,6 +17,14 @@ namespace cinch {
 /// A description that begins in column 31, broken for terminals 80 wide: CLI11 does not break lines.
 std::string wrapped(const std::string& text);
 
+/// option(name, value, description) adds one to the command, with its description wrapped.
+inline auto options_of(CLI::App& command)
+{
+    return [&command](const char* name, auto& value, const std::string& description) {
+        return command.add_option(name, value, wrapped(description));
+    };
+}
+
 /// Accepts one of the names and nothing else, and says which there are.
 template <class Enum> CLI::Validator one_of(std::vector<std::pair<std::string, Enum>> names)
 {
