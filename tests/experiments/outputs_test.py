@@ -7,7 +7,6 @@ Killed: an output is what it was before, or whole. Interrupted: the command ends
 table or page of what was done passes for the whole. A full disk or a refusal: exit status 2 with one line, and
 everything as it was."""
 
-import gzip
 import json
 import math
 import os
@@ -48,10 +47,6 @@ def is_part(name):
 # the same bytes in every run.
 def ends_with(end):
     return lambda data: data.endswith(end)
-
-
-def is_whole_gzip(data):
-    return json.loads(gzip.decompress(data).splitlines()[-1]) is not None
 
 
 PAGE, CHART = ends_with(b"</html>\n"), ends_with(b"</svg>\n\n")
