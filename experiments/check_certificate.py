@@ -6,25 +6,27 @@ usage: check_certificate.py CERTIFICATE [--input MESH [--weights WEIGHTS --trans
 
 "Accepted" means: the file holds a whole surface (rest positions, triangles, convex weights in multiples of 2^-53),
 transforms of its simulation nodes for every frame that it declares, and a tree of BVs whose leaves hold every triangle
-exactly once. For every frame, every BV and every direction of its k-DOP the bound is a finite double that is proven below,
-or +infinity, which is counted apart. All comparisons are exact: doubles are integers times a power of two.
+exactly once. For every frame, every BV and every direction of its k-DOP the bound is a finite double that is proven
+below, or +infinity, which is counted apart. All comparisons are exact: doubles are integers times a power of two.
 
   proven for     by
-  every method   the vertices: no vertex of the BV's triangles lies beyond the bound, neither evaluated in real arithmetic
-                 (exact) nor in doubles, operation by operation as cinch does (computed); both are evaluated here again
+  every method   the vertices: no vertex of the BV's triangles lies beyond the bound, neither evaluated in real
+                 arithmetic (exact) nor in doubles, operation by operation as cinch does (computed); both are evaluated
+                 here again
   convex,        weak duality besides: bound >= D(lambda) = lambda + sum_j [ l_j (b_j - lambda) + (h_j - l_j)
-  corners, eq12, max(b_j - lambda, 0) ], which is at least sum_j w_j b_j for all weights l <= w <= h of sum 1; b_j is the
-  limited        exact extremum of the BV's rest box moved by simulation node j. Box and intervals are the least that hold
-                 the BV's vertices, derived here. (Not over oriented rest boxes, nor intersected with another method.)
+  corners, eq12, max(b_j - lambda, 0) ], which is at least sum_j w_j b_j for all weights l <= w <= h of sum 1; b_j is
+  limited        the exact extremum of the BV's rest box moved by simulation node j. Box and intervals are the least
+                 that hold the BV's vertices, derived here. (Not over oriented rest boxes, nor intersected with another
+                 method.)
 
-The SHA-256 of positions, triangles, weights, transforms and method must be those that the file states, so that it cannot
-be changed by accident; who changes it on purpose proves bounds of another surface. --input ties it to a mesh file (OBJ,
-OFF) that is read here: the same triangles and, double for double, the same positions, as they are or centred and scaled
-to a longest half extent of 1.2. --weights and --transforms (a skin as text) tie the rest: positions as they are, every
-weight within (n + 2) 2^-53 of the file's quotient, n the vertex's influences, and every frame one of the clip's, in their
-order, with the same doubles.
+The SHA-256 of positions, triangles, weights, transforms and method must be those that the file states, so that it
+cannot be changed by accident; who changes it on purpose proves bounds of another surface. --input ties it to a mesh
+file (OBJ, OFF) that is read here: the same triangles and, double for double, the same positions, as they are or centred
+and scaled to a longest half extent of 1.2. --weights and --transforms (a skin as text) tie the rest: positions as they
+are, every weight within (n + 2) 2^-53 of the file's quotient, n the vertex's influences, and every frame one of the
+clip's, in their order, with the same doubles.
 
-Exit status: 0 accepted, 1 rejected or not understood, in one line, 2 wrong usage or files of --input that are unreadable.
+Exit status: 0 accepted, 1 rejected or not understood, in one line, 2 wrong usage or unreadable files of --input.
 """
 import argparse
 import contextlib

@@ -20,9 +20,6 @@
 
 namespace cinch {
 
-/// A description that begins in column 31, broken for terminals 80 wide: CLI11 does not break lines.
-std::string wrapped(const std::string& text);
-
 /// Every subcommand with its options, which go to the struct given, and its help.
 void add_scaling(CLI::App& app, ScalingOptions& o);
 void add_simulate(CLI::App& app, SimulateOptions& o);

@@ -4,6 +4,7 @@
 
 #include "cinch/bounds.hpp"
 #include "experiments/command_line.hpp"
+#include "experiments/command_line_options.hpp"
 #include "experiments/simulation/find_scene.hpp"
 #include "toolkit/surface/shapes.hpp"
 
@@ -12,9 +13,7 @@ namespace cinch {
 void add_view(CLI::App& app, ViewOptions& o)
 {
     CLI::App& command = *app.add_subcommand("view", "a page to look at: surface, nodes, bounds (Figs. 1, 6, 7)");
-    auto option = [&](const char* name, auto& value, const std::string& description) {
-        return command.add_option(name, value, wrapped(description));
-    };
+    const auto option = options_of(command);
     CLI::Option* scene = option("SCENE", o.request.scene,
                                 fmt::format("a scene ({}, or a .json file), a shape ({}), a mesh or a skinned "
                                             "character [the paper's figures: brain-pull, santa-ring-6 and fishes]",
@@ -83,17 +82,17 @@ void add_view(CLI::App& app, ViewOptions& o)
     option("--threads", o.threads, "threads [all cores]; the page is the same")
         ->check(CLI::Range(1, 1024))
         ->option_text("N");
-    command.footer("Examples:\n"
-                   "  cinch view --report figures.html      Figs. 1, 6 and 7, about a minute\n"
-                   "  cinch view brain-pull --report brain.html --kdop 26\n"
-                   "  cinch view santa-ring-6 --report ring.html --methods best,eq12,convex\n"
-                   "  cinch view fishes --report fishes.html --frames 30 --levels 5 --bits 14\n"
-                   "  cinch view robot.glb --report robot.html\n"
-                   "\n"
-                   "Bounds are rounded outward to the grid of the vertices, so that what is drawn\n"
-                   "of a bound contains what is drawn of the surface.\n"
-                   "Exit status: 0 done, 2 bad usage or input, 130 interrupted (the page has the\n"
-                   "views and methods that were done).");
+    command.footer(R"(Examples:
+  cinch view --report figures.html      Figs. 1, 6 and 7, about a minute
+  cinch view brain-pull --report brain.html --kdop 26
+  cinch view santa-ring-6 --report ring.html --methods best,eq12,convex
+  cinch view fishes --report fishes.html --frames 30 --levels 5 --bits 14
+  cinch view robot.glb --report robot.html
+
+Bounds are rounded outward to the grid of the vertices, so that what is drawn
+of a bound contains what is drawn of the surface.
+Exit status: 0 done, 2 bad usage or input, 130 interrupted (the page has the
+views and methods that were done).)");
 }
 
 void add_reproduce(CLI::App& app, ReproduceOptions& o)
@@ -104,19 +103,19 @@ void add_reproduce(CLI::App& app, ReproduceOptions& o)
         wrapped("fewer scenes, frames and repetitions: under three minutes on two cores, instead of under 45"));
     command.add_option("--out", o.out, wrapped("folder for the results and report.html [results]"))->option_text("DIR");
     command.add_option("--seed", o.seed, wrapped("seed of everything random [0]"))->option_text("N");
-    command.footer("Runs the experiments that are not in DIR yet, for this commit and these options,\n"
-                   "each by a command of this program, whose JSON Lines become DIR/NAME.jsonl. Then\n"
-                   "writes DIR/report.html: the paper's figures beside these, one file to send\n"
-                   "around. Stopped or killed, the same command continues.\n"
-                   "\n"
-                   "Examples:\n"
-                   "  cinch reproduce --quick --out quick    a first look\n"
-                   "  cinch reproduce                        everything\n"
-                   "  cinch report results                   the page again\n"
-                   "\n"
-                   "Exit status: 0 done, 1 a check of an experiment failed, 2 bad usage, an\n"
-                   "experiment that could not run, or a damaged result (the rest is done),\n"
-                   "130 interrupted (what is finished is kept).");
+    command.footer(R"(Runs the experiments that are not in DIR yet, for this commit and these options,
+each by a command of this program, whose JSON Lines become DIR/NAME.jsonl. Then
+writes DIR/report.html: the paper's figures beside these, one file to send
+around. Stopped or killed, the same command continues.
+
+Examples:
+  cinch reproduce --quick --out quick    a first look
+  cinch reproduce                        everything
+  cinch report results                   the page again
+
+Exit status: 0 done, 1 a check of an experiment failed, 2 bad usage, an
+experiment that could not run, or a damaged result (the rest is done),
+130 interrupted (what is finished is kept).)");
 }
 
 void add_report(CLI::App& app, ReportOptions& o)
@@ -126,14 +125,14 @@ void add_report(CLI::App& app, ReportOptions& o)
         ->required()
         ->option_text("");
     command.add_option("--page", o.page, wrapped("file to write [DIR/report.html]"))->option_text("FILE.html");
-    command.footer("A file that is truncated or damaged is named, with the line, and left out.\n"
-                   "\n"
-                   "Examples:\n"
-                   "  cinch report results\n"
-                   "  cinch report results --page paper.html\n"
-                   "\n"
-                   "Exit status: 0 done, 2 bad usage, no results, or a file is damaged (the page has\n"
-                   "the rest).");
+    command.footer(R"(A file that is truncated or damaged is named, with the line, and left out.
+
+Examples:
+  cinch report results
+  cinch report results --page paper.html
+
+Exit status: 0 done, 2 bad usage, no results, or a file is damaged (the page has
+the rest).)");
 }
 
 } // namespace cinch

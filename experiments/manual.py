@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""manual.py PROGRAM FOLDER: writes cinch.1, the manual page, and cinch.bash, the completion, from the program's own --help."""
+"""manual.py PROGRAM FOLDER: writes cinch.1, the manual page, and cinch.bash, the completion, from what --help says."""
 
 import pathlib
 import re
@@ -93,7 +93,8 @@ def completion(program):
     commands = entries_of(parsed(help_of(program))[2], {"Subcommands"})
     cases = ""
     for command, _ in commands:
-        options = [word for entry, _ in entries_of(parsed(help_of(program, command))[2], {"Options"}) for word in re.findall(r"--[a-z0-9-]+", entry.split(" Excludes")[0])]
+        options = [word for entry, _ in entries_of(parsed(help_of(program, command))[2], {"Options"})
+                   for word in re.findall(r"--[a-z0-9-]+", entry.split(" Excludes")[0])]
         cases += f"    {command}) words=\"{' '.join(options)}\" ;;\n"
     return COMPLETION.replace("@COMMANDS@", " ".join(name for name, _ in commands)).replace("@CASES@", cases)
 

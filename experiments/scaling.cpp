@@ -7,8 +7,9 @@
 #include <fmt/format.h>
 
 #include "cinch/surface.hpp"
+#include "experiments/baselines/optimal_box.hpp"
+#include "experiments/baselines/textbook.hpp"
 #include "experiments/input.hpp"
-#include "experiments/measure/baselines.hpp"
 #include "experiments/measure/race.hpp"
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/number.hpp"

@@ -7,8 +7,9 @@
 
 #include "cinch/bounds.hpp"
 #include "cinch/deform.hpp"
+#include "experiments/baselines/optimal_box.hpp"
+#include "experiments/baselines/textbook.hpp"
 #include "experiments/input.hpp"
-#include "experiments/measure/baselines.hpp"
 #include "toolkit/bounds/bound_box.hpp"
 #include "toolkit/hierarchy/packed_bvh.hpp"
 

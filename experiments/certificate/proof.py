@@ -7,8 +7,8 @@ import sys
 
 from certificate.records import FORMAT, HEADER, Header, hashes
 from certificate.surface import RestBounds, Surface
-from certificate.values import (WEIGHT_BITS, Rejected, bits_after_point, double, double_or_ratio, in_order, least_doubles,
-                                listed, plain, require, scaled, shown, whole)
+from certificate.values import (WEIGHT_BITS, Rejected, bits_after_point, double, double_or_ratio, in_order,
+                                least_doubles, listed, plain, require, scaled, shown, whole)
 
 
 class FrameProof:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "toolkit/collide/spatial_hash.hpp"
+#include "experiments/baselines/spatial_hash.hpp"
+
 #include "experiments/collide/own.hpp"
 #include "experiments/collide/positions.hpp"
 

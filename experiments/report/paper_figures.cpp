@@ -145,8 +145,6 @@ constexpr PaperFigure figures[] = {
 
 } // namespace
 
-std::span<const PaperFigure> paper_figures() { return figures; }
-
 const PaperFigure& paper_figure(std::string_view place, std::string_view row, std::string_view column)
 {
     const auto found = std::find_if(std::begin(figures), std::end(figures), [&](const PaperFigure& f) {

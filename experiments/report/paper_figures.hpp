@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <span>
 #include <string_view>
 
 namespace cinch {
@@ -14,7 +13,6 @@ struct PaperFigure {
     double value;
     std::string_view unit; ///< empty: a ratio or a count
 };
-std::span<const PaperFigure> paper_figures();
 
 /// Throws std::out_of_range if the paper has none there.
 const PaperFigure& paper_figure(std::string_view place, std::string_view row, std::string_view column);

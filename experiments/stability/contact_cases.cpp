@@ -4,8 +4,8 @@
 #include <map>
 #include <numeric>
 
+#include "experiments/baselines/cell_grid.hpp"
 #include "experiments/stability/bodies.hpp"
-#include "toolkit/collide/cell_grid.hpp"
 #include "toolkit/collide/triangle_pair.hpp"
 
 namespace cinch {

@@ -140,11 +140,10 @@ StabilityOutcome poisson_limit(Missing missing)
     int refused = 0;
     for (const double nu : {0.5, 0.6, -1.0, -2.0})
         try {
-            parse_scene(
-                fmt::format(
-                    R"({{"duration":1,"bodies":[{{"surface":"santa","nodes":5}}],"effects":[{{"effect":"elastic","young":1,"poisson":{}}}]}})",
-                    nu),
-                "scene", ".");
+            parse_scene(fmt::format(R"({{"duration":1,"bodies":[{{"surface":"santa","nodes":5}}],
+                                        "effects":[{{"effect":"elastic","young":1,"poisson":{}}}]}})",
+                                    nu),
+                        "scene", ".");
         } catch (const InputError&) {
             ++refused;
         }

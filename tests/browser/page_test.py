@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """page_test.py PAGE.html SCREENSHOT.png [--views N] [--charts N]
 
-Opens a page of cinch from disk in headless Chromium and uses it: charts are there, views react to mouse, keyboard and every control, and
-go back to what they were; no error on the console, no network. N: at least so many. The screenshot, of the whole page, is kept."""
+Opens a page of cinch from disk in headless Chromium and uses it: charts are there, views react to mouse, keyboard and
+every control, and go back to what they were; no error on the console, no network. N: at least so many. The screenshot,
+of the whole page, is kept."""
 import argparse
 import base64
 import pathlib
@@ -31,7 +32,8 @@ def check_charts(browser, least):
     })""")
     check(len(sizes) >= least, f"{len(sizes)} charts, expected {least} or more")
     for i, (width, height, drawn) in enumerate(sizes):
-        check(width > 0 and height > 0 and drawn > 0, f"chart {i + 1}: {width:.0f} x {height:.0f} pixels, {drawn} shapes")
+        check(width > 0 and height > 0 and drawn > 0,
+              f"chart {i + 1}: {width:.0f} x {height:.0f} pixels, {drawn} shapes")
 
 
 class View:
@@ -40,16 +42,21 @@ class View:
     def __init__(self, browser, name):
         self.browser, self.name, self.at = browser, name, "#" + name
         browser.run("document.getElementById(arguments[0]).scrollIntoView()", name)
-        state = browser.wait("const s = document.getElementById(arguments[0]).dataset.state; return s === 'loading' ? '' : s", name)
+        state = browser.wait("const s = document.getElementById(arguments[0]).dataset.state;"
+                             "return s === 'loading' ? '' : s", name)
         check(state == "ready", f"{name}: {state}")
-        browser.run("""const style = document.createElement('style'); // what is written over the canvas, and the sign of the focus, are no picture
-            style.textContent = '.view-info, .view-legend { visibility: hidden } .view canvas { outline: none !important }';
+        # What is written over the canvas, and the sign of the focus, are no picture.
+        browser.run("""const style = document.createElement('style');
+            style.textContent = '.view-info, .view-legend { visibility: hidden }'
+                + '.view canvas { outline: none !important }';
             document.head.append(style)""")
 
     def picture(self):
         """Of the canvas and nothing else: it is all in the window."""
-        inside = self.browser.run("const c = document.querySelector(arguments[0]); c.scrollIntoView({block: 'center', behavior: 'instant'});"
-                                  "const r = c.getBoundingClientRect(); return r.top >= 0 && r.bottom <= innerHeight", self.at + " canvas")
+        inside = self.browser.run("const c = document.querySelector(arguments[0]);"
+                                  "c.scrollIntoView({block: 'center', behavior: 'instant'});"
+                                  "const r = c.getBoundingClientRect(); return r.top >= 0 && r.bottom <= innerHeight",
+                                  self.at + " canvas")
         if not inside:
             raise AssertionError(f"{self.name}: the canvas does not fit into the window")
         self.browser.settle()
@@ -57,10 +64,12 @@ class View:
 
     def info(self):
         return self.browser.run("const v = document.getElementById(arguments[0]);"
-                                "return [v.querySelector('.view-info').textContent, ...[...v.querySelectorAll('output')].map(o => o.textContent)].join('\\n')", self.name)
+                                "const outputs = [...v.querySelectorAll('output')].map(o => o.textContent);"
+                                "return [v.querySelector('.view-info').textContent, ...outputs].join('\\n')", self.name)
 
     def value(self, control):
-        return self.browser.run("const c = document.getElementById(arguments[0]).querySelector(`.view-controls [name=${arguments[1]}]`);"
+        return self.browser.run("const v = document.getElementById(arguments[0]);"
+                                "const c = v.querySelector(`.view-controls [name=${arguments[1]}]`);"
                                 "return c && (c.type === 'checkbox' ? c.checked : c.value)", self.name, control)
 
     def has(self, control):
@@ -94,12 +103,14 @@ class View:
 
     def choose(self, control, value):
         """By keyboard, in the closed list."""
-        self.browser.run("document.getElementById(arguments[0]).querySelector(`.view-controls select[name=${arguments[1]}]`).focus()", self.name, control)
+        self.browser.run("const v = document.getElementById(arguments[0]);"
+                         "v.querySelector(`.view-controls select[name=${arguments[1]}]`).focus()", self.name, control)
         self.browser.keys(HOME + DOWN * self.options(control).index(value))
 
     def options(self, control):
-        return self.browser.run("return [...document.getElementById(arguments[0]).querySelectorAll(`.view-controls [name=${arguments[1]}] option`)].map(o => o.value)",
-                                self.name, control)
+        return self.browser.run("const v = document.getElementById(arguments[0]);"
+                                "const all = v.querySelectorAll(`.view-controls [name=${arguments[1]}] option`);"
+                                "return [...all].map(o => o.value)", self.name, control)
 
     def tick(self, control):
         self.browser.click(f"{self.at} .view-controls input[name={control}]")
@@ -110,7 +121,8 @@ class View:
     def test(self):
         b = self.browser
         check(self.picture() == self.picture(), f"{self.name}: two pictures of the same are the same")
-        levels = b.run("return Number(document.getElementById(arguments[0]).querySelector('input[name=level]').max)", self.name)
+        levels = b.run("return Number(document.getElementById(arguments[0]).querySelector('input[name=level]').max)",
+                       self.name)
         self.slide("frame", 0.03)  # away from the middle: a click on the handle does not move it
         self.slide("frame", 0.5)
         here = int(self.value("frame"))
@@ -121,13 +133,17 @@ class View:
         methods = self.options("method")
         if len(methods) > 1:
             self.choose("method", methods[0])
-            self.changes("the choice of method", lambda: self.choose("method", methods[-1]), lambda: self.choose("method", methods[0]))
+            self.changes("the choice of method", lambda: self.choose("method", methods[-1]),
+                         lambda: self.choose("method", methods[0]))
         kdops = self.options("k")
         if len(kdops) > 1:
-            self.changes("the choice of k", lambda: self.choose("k", kdops[-1] if self.value("k") != kdops[-1] else kdops[0]))
+            other = kdops[-1] if self.value("k") != kdops[-1] else kdops[0]
+            self.changes("the choice of k", lambda: self.choose("k", other))
         self.choose("surface", "solid")
-        self.changes("glass", lambda: self.choose("surface", "glass"), lambda: self.choose("surface", "solid"), text=False)
-        self.changes("no surface", lambda: self.choose("surface", "hidden"), lambda: self.choose("surface", "solid"), text=False)
+        self.changes("glass", lambda: self.choose("surface", "glass"), lambda: self.choose("surface", "solid"),
+                     text=False)
+        self.changes("no surface", lambda: self.choose("surface", "hidden"), lambda: self.choose("surface", "solid"),
+                     text=False)
         for control in ("bounds", "truth", "nodes"):
             if self.has(control):
                 self.choose("surface", "glass")
@@ -184,7 +200,9 @@ class View:
         before = self.value("frame")
         keys(" ")
         self.browser.wait("const v = document.getElementById(arguments[0]);"
-                          "return v.querySelector('[name=frame]').value !== arguments[1] && v.querySelector('[name=play]').textContent === 'Pause'", self.name, before, seconds=30)
+                          "return v.querySelector('[name=frame]').value !== arguments[1]"
+                          "    && v.querySelector('[name=play]').textContent === 'Pause'",
+                          self.name, before, seconds=30)
         keys(" ")
         self.browser.settle()
         stopped = self.value("frame")
@@ -205,7 +223,8 @@ def whole_page(browser, file):
     """The page from top to bottom, as far as browsers go."""
     size = browser.run("return [document.documentElement.scrollWidth, document.documentElement.scrollHeight]")
     made = browser.call("POST", "/goog/cdp/execute", {"cmd": "Page.captureScreenshot", "params": {
-        "captureBeyondViewport": True, "clip": {"x": 0, "y": 0, "width": size[0], "height": min(size[1], 12000), "scale": 1}}})
+        "captureBeyondViewport": True,
+        "clip": {"x": 0, "y": 0, "width": size[0], "height": min(size[1], 12000), "scale": 1}}})
     pathlib.Path(file).write_bytes(base64.b64decode(made["data"]))
 
 
@@ -231,7 +250,9 @@ def main():
         check(len(names) >= options.views, f"{len(names)} views, expected {options.views} or more")
         for name in names:
             View(browser, name).test()
-        browser.run("document.querySelectorAll('style').forEach(s => { if (s.textContent.startsWith('.view-info')) s.remove() }); scrollTo(0, 0)")
+        browser.run("for (const s of document.querySelectorAll('style'))"
+                    "    if (s.textContent.startsWith('.view-info')) s.remove();"
+                    "scrollTo(0, 0)")
         browser.settle()
         whole_page(browser, options.screenshot)
         quiet(browser, options.page, "")
@@ -240,7 +261,8 @@ def main():
         for name in names:
             browser.run("document.getElementById(arguments[0]).scrollIntoView()", name)
             browser.wait("return document.getElementById(arguments[0]).dataset.state === 'unsupported'", name)
-            said = browser.run("return [...document.getElementById(arguments[0]).querySelectorAll('.view-note')].map(n => n.textContent).join(' ')", name)
+            said = browser.run("const notes = document.getElementById(arguments[0]).querySelectorAll('.view-note');"
+                               "return [...notes].map(n => n.textContent).join(' ')", name)
             check("WebGL" in said, f"{name}: without WebGL it says so")
         quiet(browser, options.page, " without WebGL")
     print(f"\n{len(failures)} failed" if failures else "\nall passed")

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """take_figure.py PAGE.html FIGURE.png
 
-Fig. 1 from a page of 'cinch view brain-pull': at rest with its box; pulled, with its simulation nodes; the bound around the true box."""
+Fig. 1 from a page of 'cinch view brain-pull': at rest with its box; pulled, with its simulation nodes; the bound around
+the true box."""
 import base64
 import pathlib
 import re
@@ -24,16 +25,19 @@ return view.querySelector('.view-info').textContent"""
 
 # Every panel in the middle of its place, all at the same scale.
 COMPOSE = """const [panels, labels, width, height, done] = arguments, strip = 54;
-const canvas = Object.assign(document.createElement('canvas'), {width: panels.length * width, height: height + strip}), c = canvas.getContext('2d');
+const canvas = Object.assign(document.createElement('canvas'), {width: panels.length * width, height: height + strip});
+const c = canvas.getContext('2d');
 c.fillStyle = '#f6f7f9';
 c.fillRect(0, 0, canvas.width, canvas.height);
 c.imageSmoothingQuality = 'high';
 c.textAlign = 'center';
 
 function drawn(image) { // the box of what is no background
-    const copy = Object.assign(document.createElement('canvas'), {width: image.width, height: image.height}), d = copy.getContext('2d');
+    const copy = Object.assign(document.createElement('canvas'), {width: image.width, height: image.height});
+    const d = copy.getContext('2d');
     d.drawImage(image, 0, 0);
-    const {data} = d.getImageData(0, 0, image.width, image.height), box = {left: image.width, right: 0, top: image.height, bottom: 0};
+    const {data} = d.getImageData(0, 0, image.width, image.height);
+    const box = {left: image.width, right: 0, top: image.height, bottom: 0};
     for (let i = 0; i < data.length; i += 4)
         if (Math.abs(data[i] - 246) + Math.abs(data[i + 1] - 247) + Math.abs(data[i + 2] - 249) > 12) {
             const x = i / 4 % image.width, y = Math.floor(i / 4 / image.width);
@@ -52,7 +56,8 @@ function drawn(image) { // the box of what is no background
         await image.decode();
         images.push({image, box: drawn(image)});
     }
-    const scale = Math.max(...images.map(({box}) => Math.max((box.right - box.left) / (width - 16), (box.bottom - box.top) / (height - 16))));
+    const scale = Math.max(...images.map(({box}) =>
+        Math.max((box.right - box.left) / (width - 16), (box.bottom - box.top) / (height - 16))));
     images.forEach(({image, box}, i) => {
         const x = (box.left + box.right - scale * width) / 2, y = (box.top + box.bottom - scale * height) / 2;
         c.drawImage(image, x, y, scale * width, scale * height, i * width, 0, width, height);
@@ -70,7 +75,8 @@ def main(page, figure):
     with Browser(1100, 1000, scale=2) as browser:
         browser.open(page)
         browser.wait("return document.querySelector('section.view').dataset.state === 'ready'")
-        browser.run("const s = document.createElement('style'); s.textContent = '.view-info, .view-legend { visibility: hidden } canvas:focus-visible { outline: none !important }';"
+        browser.run("const s = document.createElement('style'); s.textContent = '.view-info, .view-legend {"
+                    " visibility: hidden } canvas:focus-visible { outline: none !important }';"
                     "document.head.append(s)")
 
         frames = browser.run("return Number(document.querySelector('[name=frame]').max)")
@@ -88,9 +94,12 @@ def main(page, figure):
         nodes, _ = panel(frame=pulled, surface="glass", truth=False, nodes=True)
         both, said = panel(surface="solid", bounds=True, truth=True, nodes=False)
         ratio = re.search(r"bounds: ([0-9.]+)", said).group(1)
-        labels = [["At rest, in its box", "30,000 vertices"], ["Pulled: its simulation nodes", "509 nodes move all vertices"],
-                  ["The bound, in time linear in the nodes", f"around the true box: {float(ratio):.2f} times its surface area"]]
-        made = browser.call("POST", "/execute/async", {"script": COMPOSE, "args": [[rest, nodes, both], labels, 390, 334]})
+        labels = [["At rest, in its box", "30,000 vertices"],
+                  ["Pulled: its simulation nodes", "509 nodes move all vertices"],
+                  ["The bound, in time linear in the nodes",
+                   f"around the true box: {float(ratio):.2f} times its surface area"]]
+        made = browser.call("POST", "/execute/async",
+                            {"script": COMPOSE, "args": [[rest, nodes, both], labels, 390, 334]})
         pathlib.Path(figure).write_bytes(base64.b64decode(made))
 
 

@@ -39,7 +39,8 @@ def sealed(records):
     for i in vertices:
         r = records[i]
         sha["positions"].update(doubles(r["rest"]))
-        sha["weights"].update(struct.pack(f"<I{len(r['nodes'])}I", len(r["nodes"]), *r["nodes"]) + doubles(r["weights"]))
+        sha["weights"].update(struct.pack(f"<I{len(r['nodes'])}I", len(r["nodes"]), *r["nodes"])
+                              + doubles(r["weights"]))
     for i in triangles:
         sha["triangles"].update(struct.pack("<3I", *records[i]["vertices"]))
     for i in frames:

@@ -2,8 +2,8 @@
 """MUTATIONS: name -> (change of a certificate's records, part of the reason to reject it).
 HARMLESS: name -> a change of nothing.
 
-Names with "sealed" carry hashes and counts that fit, so that what is wrong must be found itself; names with "of best" change
-the certificate of method best, the others that of limited. A change returns records, texts of lines, or bytes."""
+Names with "sealed" carry hashes and counts that fit, so that what is wrong must be found itself; names with "of best"
+change the certificate of method best, the others that of limited. A change returns records, texts of lines or bytes."""
 import gzip
 import json
 import math
@@ -57,7 +57,7 @@ def lower(by):
     return lambda x: (float.fromhex(x) - by).hex()
 
 
-# ---- the surface and its BVs -------------------------------------------------------------------------------------------------
+# ---- the surface and its BVs -----------------------------------------------------------------------------------------
 
 @mutation("a leaf's triangle doubled, sealed", "in two leaves or twice in one")
 def _(records):
@@ -71,7 +71,8 @@ def _(records):
     return sealed(records)
 
 
-@mutation("a leaf's triangle replaced by another leaf's, and bounds below its own vertices, sealed", "in two leaves or twice in one")
+@mutation("a leaf's triangle replaced by another leaf's, and bounds below its own vertices, sealed",
+          "in two leaves or twice in one")
 def _(records):
     leaves(records)[-1]["triangles"] = list(leaves(records)[0]["triangles"])
     return sealed(records)
@@ -153,7 +154,8 @@ field("triangle", ["vertices", 0], True, "a vertex is True")
 field("triangle", ["triangle"], 7, "triangle 7 where 3 should follow", seal=True)
 field("rest", ["vertex"], 4, "vertex 4 where 3 should follow", seal=True)
 field("rest", ["vertex"], 3.0, "only whole numbers", seal=True)
-field("rest", ["rest", 0], lambda x: (float.fromhex(x) + 2.0**-30).hex(), "SHA-256 of the positions", name="a rest position moved")
+field("rest", ["rest", 0], lambda x: (float.fromhex(x) + 2.0**-30).hex(), "SHA-256 of the positions",
+      name="a rest position moved")
 field("rest", ["rest", 0], "0x1.00000000000001p+0", "no hexadecimal float")
 field("rest", ["rest", 0], "0x1.0000000000001p-1030", "no hexadecimal float")
 field("rest", ["rest", 0], "0x1p-1075", "no hexadecimal float")
@@ -178,9 +180,12 @@ field("rest", ["weights", 0], lambda x: (float.fromhex(x) + math.copysign(2.0**-
       "do not sum to 1", seal=True, name="a weight moved by 2^-53, sealed")
 field("rest", ["nodes", 0], 6, "simulation node", seal=True)
 field("rest", ["nodes", 0], -1, "a simulation node is -1", seal=False)
-field("rest", ["nodes"], lambda nodes: nodes[::-1], "do not ascend", seal=True, name="simulation nodes turned round, sealed")
-field("rest", ["nodes"], lambda nodes: [nodes[0]] * len(nodes), "do not ascend", seal=True, name="a simulation node twice, sealed")
-field("rest", ["nodes"], lambda nodes: nodes[1:], "weights is no list", seal=True, name="a simulation node less, sealed")
+field("rest", ["nodes"], lambda nodes: nodes[::-1], "do not ascend", seal=True,
+      name="simulation nodes turned round, sealed")
+field("rest", ["nodes"], lambda nodes: [nodes[0]] * len(nodes), "do not ascend", seal=True,
+      name="a simulation node twice, sealed")
+field("rest", ["nodes"], lambda nodes: nodes[1:], "weights is no list", seal=True,
+      name="a simulation node less, sealed")
 
 
 @mutation("a weight moved to another simulation node", "SHA-256 of the weights")
@@ -190,7 +195,7 @@ def _(records):
     return records
 
 
-# ---- the header --------------------------------------------------------------------------------------------------------------
+# ---- the header ------------------------------------------------------------------------------------------------------
 
 for key, value, reason in (
     ("certificate", "cinch 1", "the format is"),
@@ -229,7 +234,8 @@ for key, value, reason in (
 ):
     field("certificate", [key], value, reason)
 for name in ("positions", "triangles", "weights", "method"):
-    field("certificate", ["sha256", name], lambda x: x[::-1], f"SHA-256 of the {name} is another", name=f"the SHA-256 of the {name} changed")
+    field("certificate", ["sha256", name], lambda x: x[::-1], f"SHA-256 of the {name} is another",
+          name=f"the SHA-256 of the {name} changed")
 field("certificate", ["sha256", "positions"], "A" * 64, "SHA-256 of the positions is")
 
 
@@ -279,7 +285,7 @@ def _(records):
     return records[1:]
 
 
-# ---- frames and bounds -------------------------------------------------------------------------------------------------------
+# ---- frames and bounds -----------------------------------------------------------------------------------------------
 
 field("maps", ["maps", 0, 5], lambda x: (float.fromhex(x) + 2.0**-45).hex(), "", name="a transform changed", which=1)
 field("maps", ["time"], "0x1p+3", "SHA-256 of the transforms")
@@ -294,7 +300,8 @@ field("bounds", ["bounds"], lambda b: b + b[-1:], "no list of 6", name="a bound 
 field("bounds", ["bounds", 3], "inf", "it ends with proven")
 field("bounds", ["bounds", 3], lower(1), "beyond the bound", name="a bound lowered far, sealed", seal=True)
 field("bounds", ["bounds", 3], lower(1), "beyond the bound", name="a bound of best lowered far", which=20)
-for x in ("1/0", "1/-2", "-/3", "1/0x2", "1e999999999/3", "1.5/2", "9" * 2000 + "/7", "٣/4", "inf", "nan", None, ["0x1p+0"]):
+for x in ("1/0", "1/-2", "-/3", "1/0x2", "1e999999999/3", "1.5/2", "9" * 2000 + "/7", "٣/4", "inf", "nan", None,
+          ["0x1p+0"]):
     field("bounds", ["lambda", 2], x, "", name=f"lambda = {str(x)[:20]}")
 field("bounds", ["lambda"], lambda b: b[:-1], "no list of 6", name="a lambda less")
 field("bounds", ["lambda", 1], "0x1p+40", "lies below D(lambda)")
@@ -402,7 +409,7 @@ for which, name in ((0, "first"), (10, "eleventh"), (-1, "last")):
         MUTATIONS[f"without the {name} record with {key}"] = without(key, which), ""
 
 
-# ---- the end -----------------------------------------------------------------------------------------------------------------
+# ---- the end ---------------------------------------------------------------------------------------------------------
 
 MUTATIONS["no end"] = (lambda records: records[:-1]), "the file ends where the end should follow"
 for key, value, reason in (
@@ -418,7 +425,7 @@ for key, value, reason in (
     field("end", [key], value, reason)
 
 
-# ---- the text ----------------------------------------------------------------------------------------------------------------
+# ---- the text --------------------------------------------------------------------------------------------------------
 
 def line_changed(name, reason, change, which=7):
     def of_records(records):
@@ -429,16 +436,20 @@ def line_changed(name, reason, change, which=7):
 
 
 line_changed("a key twice, the same", 'the key "vertex" stands twice', lambda s: s.replace("{", '{"vertex": 6, ', 1))
-line_changed("a key twice in the header, the first one wrong", 'the key "method" stands twice', lambda s: s.replace("{", '{"method": "vertices", ', 1), 0)
-line_changed("a key twice in a hash", 'the key "positions" stands twice', lambda s: s.replace('"sha256": {', '"sha256": {"positions": "", '), 0)
-line_changed("a key twice, spelt in two ways", 'the key "bounds" stands twice', lambda s: s.replace("{", '{"\\u0062ounds": [], ', 1), -2)
+line_changed("a key twice in the header, the first one wrong", 'the key "method" stands twice',
+             lambda s: s.replace("{", '{"method": "vertices", ', 1), 0)
+line_changed("a key twice in a hash", 'the key "positions" stands twice',
+             lambda s: s.replace('"sha256": {', '"sha256": {"positions": "", '), 0)
+line_changed("a key twice, spelt in two ways", 'the key "bounds" stands twice',
+             lambda s: s.replace("{", '{"\\u0062ounds": [], ', 1), -2)
 line_changed("an array", "no JSON object", lambda s: f"[{s}]")
 line_changed("a comma too many", "not JSON", lambda s: s.replace("}", ",}"))
 line_changed("NaN as a number", "only whole numbers", lambda s: s.replace('"vertex": 6', '"vertex": NaN'))
 line_changed("a number of 5,000 digits", "not JSON", lambda s: s.replace('"vertex": 6', '"vertex": ' + "6" * 5000))
 line_changed("two records on a line", "not JSON", lambda s: s + s)
 line_changed("nested deeply", "nested too deeply", lambda s: "[" * 200000)
-line_changed("nested deeply within", "nested too deeply", lambda s: s.replace('"vertex": 6', '"vertex": ' + '{"a":' * 100000))
+line_changed("nested deeply within", "nested too deeply",
+             lambda s: s.replace('"vertex": 6', '"vertex": ' + '{"a":' * 100000))
 line_changed("a tab in a key", "not JSON", lambda s: s.replace("vertex", "ver\tex"))
 line_changed("half a line", "not JSON", lambda s: s[:len(s) // 2])
 MUTATIONS["not UTF-8"] = (lambda records: text_of(records).replace(b"vertex", b"\xff\xfe", 1)), "not UTF-8"
@@ -459,7 +470,7 @@ for name, damage, reason in (
     MUTATIONS[f"gzip, {name}"] = (lambda records, damage=damage: damage(gzip.compress(text_of(records)))), reason
 
 
-# ---- what changes nothing ----------------------------------------------------------------------------------------------------
+# ---- what changes nothing --------------------------------------------------------------------------------------------
 
 @harmless
 def order_of_keys(records):
@@ -495,13 +506,15 @@ def escapes(records):
 
 def respelt(spell):
     def change(records):
-        return [re.sub(r'"(-?)0x([0-9a-f.]+)p([+-]\d+)"', lambda m: f'"{spell(m[0][1:-1])}"', json.dumps(r)) for r in records]
+        return [re.sub(r'"(-?)0x([0-9a-f.]+)p([+-]\d+)"', lambda m: f'"{spell(m[0][1:-1])}"', json.dumps(r))
+                for r in records]
     return change
 
 
 HARMLESS["doubles with all their digits"] = respelt(lambda x: float.fromhex(x).hex())
 HARMLESS["doubles in capitals"] = respelt(str.upper)
-HARMLESS["doubles with more zeros"] = respelt(lambda x: x.replace("0x", "0x000").replace("p", "0000p" if "." in x else ".0000p"))
+HARMLESS["doubles with more zeros"] = respelt(
+    lambda x: x.replace("0x", "0x000").replace("p", "0000p" if "." in x else ".0000p"))
 @respelt
 def as_a_whole_number(x):
     p, q = float.fromhex(x).as_integer_ratio()

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""certificate_test.py CINCH CHECKER: certificates are accepted, and rejected in one line after any change that matters."""
+"""certificate_test.py CINCH CHECKER: certificates are accepted; after any change that matters, rejected in one line."""
 import contextlib
 import copy
 import gzip
@@ -149,7 +149,8 @@ class CertificateTest(unittest.TestCase):
                 if status == ACCEPTED:  # another lambda, or another bound that is true
                     changed = (gzip.decompress(damaged) if packed else damaged).decode().splitlines()
                     for before, after in zip(self.limited, map(json.loads, changed), strict=True):
-                        self.assertEqual(*({k: v for k, v in r.items() if k not in ("bounds", "lambda")} for r in (before, after)))
+                        self.assertEqual(*({k: v for k, v in r.items() if k not in ("bounds", "lambda")}
+                                           for r in (before, after)))
                         for d, bound in enumerate(after.get("bounds", ())):
                             if bound != before["bounds"][d]:
                                 support = oracle.support(after["frame"], after["bv"], d)
@@ -157,10 +158,11 @@ class CertificateTest(unittest.TestCase):
 
     def test_every_method_and_its_argument(self):
         duality = ("--method eq12 --kdop 14", "--method convex --kdop 18", "--method corners", "--method limited+eq12")
-        vertices = ("--method limited --rest obb", "--method vertices --kdop 26", "--method support+limited", "--method sphere",
-                    "--method local", "--method linear")
+        vertices = ("--method limited --rest obb", "--method vertices --kdop 26", "--method support+limited",
+                    "--method sphere", "--method local", "--method linear")
         for i, arguments in enumerate(duality + vertices):
-            records = self.certificate(self.mesh, "--nodes", "5", "--frames", "2", *arguments.split(), name=f"{i}.jsonl")
+            records = self.certificate(self.mesh, "--nodes", "5", "--frames", "2", *arguments.split(),
+                                       name=f"{i}.jsonl")
             self.assertEqual("lambda" in records[-2], arguments in duality, arguments)
             self.assert_accepted(self.check(records), arguments)
             bound = records[-2]["bounds"]
@@ -192,7 +194,8 @@ class CertificateTest(unittest.TestCase):
             record = changed[rng.choice(of(changed, "bounds"))]
             d = rng.randrange(6)
             bound, lam = float.fromhex(record["bounds"][d]), double_or_ratio(record["lambda"][d])
-            lowest = max(surface.dual(record["frame"], record["bv"], d, lam), surface.support(record["frame"], record["bv"], d))
+            lowest = max(surface.dual(record["frame"], record["bv"], d, lam),
+                         surface.support(record["frame"], record["bv"], d))
             lowered = bound - abs(bound) * 2.0 ** rng.randrange(-20, 0)
             record["bounds"][d] = lowered.hex()
             verdict = self.check(changed)
@@ -227,14 +230,16 @@ class CertificateTest(unittest.TestCase):
                 for r in (records[i] for i in of(records, "bounds")):
                     for d, bound in enumerate(r["bounds"]):
                         if bound != "inf":
-                            self.assertGreaterEqual(Fraction(float.fromhex(bound)), oracle.support(r["frame"], r["bv"], d))
+                            self.assertGreaterEqual(Fraction(float.fromhex(bound)),
+                                                    oracle.support(r["frame"], r["bv"], d))
         self.assertGreater(accepted, 20)
 
     def test_infinite_bounds_are_counted_apart(self):
         text = skin()[1].replace("wild", "far").split("\n")
         text[-2] = text[-2].replace(text[-2].split()[4], "1e200", 1)
         clips = written(self.folder.name, "\n".join(text).encode(), "far.frames.txt")
-        path = self.written_by_cinch(self.mesh, "--weights", self.weights, "--transforms", clips, "--clip", "far", "--leaf", "4")
+        path = self.written_by_cinch(self.mesh, "--weights", self.weights, "--transforms", clips, "--clip", "far",
+                                     "--leaf", "4")
         status, lines = run(path)
         self.assertEqual(status, ACCEPTED, lines)
         proven, infinite = int(lines[0].split()[2]), int(lines[0].split()[5])
@@ -262,7 +267,8 @@ class CertificateTest(unittest.TestCase):
         points = [line[2:] for line in lines if line[0] == "v"]
         off = f"OFF\n{len(points)} {len(faces)} 0\n" + "\n".join(points) + "\n"
         off += "".join(f"4 {' '.join(str(int(v) - 1) for v in f)}\n" for f in faces)
-        self.assert_accepted(self.check(self.best, "--input", written(self.folder.name, off.encode(), "grid.OFF")), "OFF")
+        self.assert_accepted(self.check(self.best, "--input", written(self.folder.name, off.encode(), "grid.OFF")),
+                             "OFF")
         relative = [" ".join(["f", *(f"{int(v) - 1 - ROWS * ROWS}/1/-1" for v in line.split()[1:])])
                     if line[0] == "f" else line for line in lines]
         whole = "\n".join(lines)
@@ -278,7 +284,10 @@ class CertificateTest(unittest.TestCase):
         ):
             with self.subTest(name):
                 verdict = self.check(self.best, "--input", written(self.folder.name, text.encode(), "other.obj"))
-                self.assert_accepted(verdict, name) if wanted else self.assert_rejected(verdict, "are not those of", name)
+                if wanted:
+                    self.assert_accepted(verdict, name)
+                else:
+                    self.assert_rejected(verdict, "are not those of", name)
 
     def test_a_skin_is_tied_with_weights_and_frames(self):
         for frames in ("4", "2", "1"):
@@ -289,7 +298,8 @@ class CertificateTest(unittest.TestCase):
         records = self.certificate(self.mesh, *self.skinned, "--clip", "wild")
         other = copy.deepcopy(records)
         other[0]["clip"] = "still"
-        self.assert_rejected(self.check(sealed(other), "--input", self.mesh, *self.skinned), "none of those of clip", "another clip")
+        self.assert_rejected(self.check(sealed(other), "--input", self.mesh, *self.skinned), "none of those of clip",
+                             "another clip")
         swapped = copy.deepcopy(records)
         first, second = of(swapped, "maps")[:2]
         for field in ("time", "maps"):
@@ -297,7 +307,8 @@ class CertificateTest(unittest.TestCase):
         for i in of(swapped, "bounds"):
             swapped[i]["bounds"] = [(1e3).hex()] * 6
         self.assert_accepted(self.check(sealed(swapped)), "frames swapped, bounds true")
-        self.assert_rejected(self.check(sealed(swapped), "--input", self.mesh, *self.skinned), "not in their order", "frames swapped")
+        self.assert_rejected(self.check(sealed(swapped), "--input", self.mesh, *self.skinned), "not in their order",
+                             "frames swapped")
         weights, clips = skin()
         lines = weights.splitlines()
         lines[3] = lines[3].replace(lines[3].split()[2], f"{float(lines[3].split()[2]) + 1e-9:.9f}")
@@ -310,7 +321,8 @@ class CertificateTest(unittest.TestCase):
     def test_files_that_cannot_be_tied_are_errors_of_usage(self):
         for name, data in (
             ("x.obj", b"v 1 2\nf 1 1 1\n"), ("x.obj", b"v 0 0 0\nf 1 1 2\n"), ("x.obj", b"\xff\x00"),
-            ("x.obj", b"v nan 0 0\nf 1 1 1\n"), ("x.obj", b"v 1e999 0 0\nf 1 1 1\n"), ("x.ply", b"ply\n"), ("x.off", b""),
+            ("x.obj", b"v nan 0 0\nf 1 1 1\n"), ("x.obj", b"v 1e999 0 0\nf 1 1 1\n"), ("x.ply", b"ply\n"),
+            ("x.off", b""),
             ("x.off", b"OFF\n3 1 0\n0 0 0\n"), ("x.off", b"OFF\n1 1 0\n0 0 0\n3 0 0 1\n"),
         ):
             status, lines = self.check(self.best, "--input", written(self.folder.name, data, name))
@@ -340,7 +352,8 @@ def edited(records, rng):
         value = where[key]
         if isinstance(value, str) and "0x" in value:
             x = float.fromhex(value)
-            where[key] = rng.choice((x * (1 + 2.0**-20), x * (1 - 2.0**-20), x + 1, x - 1, -x, x * 1e200, x * 1e-200, 0.0, math.inf)).hex()
+            where[key] = rng.choice((x * (1 + 2.0**-20), x * (1 - 2.0**-20), x + 1, x - 1, -x, x * 1e200, x * 1e-200,
+                                     0.0, math.inf)).hex()
         elif isinstance(value, list) and value:
             rng.choice((value.pop, value.reverse, lambda: value.append(value[0])))()
         elif isinstance(value, int):

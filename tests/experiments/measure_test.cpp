@@ -9,7 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "cinch/refit.hpp"
-#include "experiments/measure/baselines.hpp"
+#include "experiments/baselines/optimal_box.hpp"
+#include "experiments/baselines/textbook.hpp"
 #include "experiments/measure/race.hpp"
 #include "tests/support.hpp"
 #include "toolkit/bounds/bound_box.hpp"

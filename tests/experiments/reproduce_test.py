@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""reproduce_test.py PROGRAM FOLDER: a quick run that is stopped and killed continues, gives a page whose figures all lead to a line, and survives damage."""
+"""reproduce_test.py PROGRAM FOLDER: a quick run that is stopped and killed continues, gives a page whose figures all
+lead to a line, and survives damage."""
 
 import html.parser
 import json

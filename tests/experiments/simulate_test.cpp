@@ -171,7 +171,8 @@ TEST_CASE("checkpoints continue only what they are of")
     refused("skin --checkpoint /dev/full", "is no regular file");
     // A surface that changed beside the scene.
     const std::string own =
-        R"({"duration": 0.05, "bodies": [{"surface": "m.off", "places": [[0,0,0],[1,0,0],[0,1,0],[0,0,1]]}], "effects": [{"effect": "gravity"}]})";
+        R"({"duration": 0.05, "bodies": [{"surface": "m.off", "places": [[0,0,0],[1,0,0],[0,1,0],[0,0,1]]}],
+            "effects": [{"effect": "gravity"}]})";
     const std::string scene = folder.write("own.json", own).string(),
                       mesh = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
     folder.write("m.off", mesh);
@@ -199,7 +200,8 @@ TEST_CASE("a step that cannot be solved is reported with time and body, and no f
     TemporaryFolder folder;
     const fs::path scene = folder.write(
         "hard.json", R"({"duration": 1, "integrator": {"method": "implicit", "iterations": 1, "tolerance": 1e-12},
-        "bodies": [{"name": "bar", "surface": "box", "box": [1, 0.3, 0.3], "cells": [8, 2, 2], "lattice": [6, 2, 2], "spin": [0, 9, 0]}],
+        "bodies": [{"name": "bar", "surface": "box", "box": [1, 0.3, 0.3], "cells": [8, 2, 2], "lattice": [6, 2, 2],
+                    "spin": [0, 9, 0]}],
         "effects": [{"effect": "elastic", "young": 1e7}]})");
     const auto run = test::cinch("simulate " + scene.string() + " --frames " + (folder.path() / "f").string());
     CHECK(run.status == 1);
@@ -213,7 +215,8 @@ TEST_CASE(
 {
     TemporaryFolder folder;
     auto scene = [](const std::string& body, const std::string& young, const std::string& more) {
-        return R"({"duration": 0.5, "bodies": [{"name": "bar", "surface": "box", "cells": [4, 2, 2], "lattice": [6, 3, 3], )" +
+        return R"({"duration": 0.5,
+                   "bodies": [{"name": "bar", "surface": "box", "cells": [4, 2, 2], "lattice": [6, 3, 3], )" +
                body + R"(}], "effects": [{"effect": "elastic", "young": )" + young + R"(}, {"effect": "hourglass"}, )" +
                more + "]}";
     };
@@ -247,10 +250,8 @@ TEST_CASE(
     // Held by an end that turns, stiffer than the places of that end are fine.
     const fs::path hard = folder.write(
         "hard.json",
-        scene(
-            metre, "1e19",
-            gravity +
-                R"(, {"effect": "scripted", "nodes": {"box": [[-1, -1, -1], [-0.3, 1, 1]]}, "axis": [1, 1, 0], "rate": 3})"));
+        scene(metre, "1e19", gravity + R"(, {"effect": "scripted", "nodes": {"box": [[-1, -1, -1], [-0.3, 1, 1]]},
+                              "axis": [1, 1, 0], "rate": 3})"));
     const auto run = test::cinch("simulate " + hard.string() + " --frames " + (folder.path() / "h").string());
     CHECK(run.status == 1);
     CHECK(run.err.find("body 'bar' at 0 s: rounding: accelerations are off by ") != std::string::npos);

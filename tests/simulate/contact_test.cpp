@@ -68,9 +68,12 @@ json two_boxes()
 {
     return json::parse(
         R"({"name": "impact", "duration": 0.5, "frame": 0.01, "integrator": {"method": "implicit", "step": 0.01},
-        "bodies": [{"name": "a", "surface": "box", "box": [1, 1, 1], "cells": [8, 8, 8], "lattice": [3, 3, 3], "position": [-0.7, 0, 0], "velocity": [2, 0, 0]},
-                   {"name": "b", "surface": "box", "box": [1, 1, 1], "cells": [7, 7, 7], "lattice": [3, 3, 3], "position": [0.7, 0.05, 0.03], "velocity": [-2, 0, 0]}],
-        "effects": [{"effect": "elastic", "young": 3e5, "poisson": 0.3}, {"effect": "hourglass"}, {"effect": "contact", "stiffness": 1e7}]})");
+        "bodies": [{"name": "a", "surface": "box", "box": [1, 1, 1], "cells": [8, 8, 8], "lattice": [3, 3, 3],
+                    "position": [-0.7, 0, 0], "velocity": [2, 0, 0]},
+                   {"name": "b", "surface": "box", "box": [1, 1, 1], "cells": [7, 7, 7], "lattice": [3, 3, 3],
+                    "position": [0.7, 0.05, 0.03], "velocity": [-2, 0, 0]}],
+        "effects": [{"effect": "elastic", "young": 3e5, "poisson": 0.3}, {"effect": "hourglass"},
+                    {"effect": "contact", "stiffness": 1e7}]})");
 }
 
 Simulation make(const json& scene) { return Simulation(parse_scene(scene.dump(), "s.json", "."), "s.json"); }

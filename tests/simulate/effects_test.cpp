@@ -19,7 +19,6 @@ namespace {
 struct Named {
     std::string name;
     std::function<std::unique_ptr<Effect>(const MeshlessBody&)> make;
-    bool solid_only = false;
 };
 
 std::vector<std::uint32_t> some(const MeshlessBody& body)

@@ -22,8 +22,10 @@ Simulation with_effect(const json& effect)
 {
     json scene =
         json::parse(R"({"duration": 1, "frame": 1e-3, "integrator": {"method": "explicit", "step": 1e-4}, "bodies": [
-        {"name": "a", "surface": "box", "box": [1, 0.8, 0.6], "cells": [2, 2, 2], "lattice": [4, 3, 3], "spin": [0.3, 1, 0]},
-        {"name": "b", "surface": "box", "box": [1, 0.8, 0.6], "cells": [2, 2, 2], "lattice": [4, 3, 3], "position": [0.9, 0.1, 0]}]})");
+        {"name": "a", "surface": "box", "box": [1, 0.8, 0.6], "cells": [2, 2, 2], "lattice": [4, 3, 3],
+         "spin": [0.3, 1, 0]},
+        {"name": "b", "surface": "box", "box": [1, 0.8, 0.6], "cells": [2, 2, 2], "lattice": [4, 3, 3],
+         "position": [0.9, 0.1, 0]}]})");
     scene["effects"] = json::array({effect});
     return Simulation(parse_scene(scene.dump(), "s.json", "."), "s.json");
 }

@@ -22,15 +22,19 @@ namespace {
 json good()
 {
     return json::parse(R"({"name": "bar", "duration": 0.2, "integrator": {"method": "implicit", "step": 0.02},
-        "bodies": [{"name": "bar", "surface": "box", "box": [1, 0.3, 0.3], "cells": [8, 2, 2], "lattice": [6, 2, 2], "density": 900},
-                   {"name": "ball", "surface": "santa", "size": 0.5, "nodes": 30, "position": [0, 0, 2], "rotation": {"axis": [1, 0, 0], "degrees": 30}}],
+        "bodies": [{"name": "bar", "surface": "box", "box": [1, 0.3, 0.3], "cells": [8, 2, 2], "lattice": [6, 2, 2],
+                    "density": 900},
+                   {"name": "ball", "surface": "santa", "size": 0.5, "nodes": 30, "position": [0, 0, 2],
+                    "rotation": {"axis": [1, 0, 0], "degrees": 30}}],
         "effects": [{"effect": "gravity"}, {"effect": "elastic", "young": 1e4, "poisson": 0.3}, {"effect": "hourglass"},
                     {"effect": "viscosity", "viscosity": 20}, {"effect": "damping", "rate": 0.1},
                     {"effect": "plasticity", "yield": 0.01, "creep": 5, "bodies": ["bar"]},
                     {"effect": "ground", "point": [0, 0, -0.3], "stiffness": 1e5, "friction": 0.4},
-                    {"effect": "pulling", "nodes": {"nearest": [0.5, 0, 0], "count": 3}, "force": [5, 0, 0], "bodies": ["bar"]},
+                    {"effect": "pulling", "nodes": {"nearest": [0.5, 0, 0], "count": 3}, "force": [5, 0, 0],
+                     "bodies": ["bar"]},
                     {"effect": "pinned", "nodes": {"box": [[-1, -1, -1], [-0.4, 1, 1]]}, "bodies": ["bar"]},
-                    {"effect": "scripted", "nodes": {"nearest": [0, 0, 0.5], "count": 4}, "axis": [0, 0, 1], "rate": 3, "bodies": ["ball"]}]})");
+                    {"effect": "scripted", "nodes": {"nearest": [0, 0, 0.5], "count": 4}, "axis": [0, 0, 1], "rate": 3,
+                     "bodies": ["ball"]}]})");
 }
 
 std::string complaint(const json& scene)

@@ -69,9 +69,12 @@ bool cancelled() { return ++asked > most; }
 json two_boxes()
 {
     return json::parse(R"({"duration": 1, "frame": 0.02, "integrator": {"step": 0.01}, "bodies": [
-        {"name": "a", "surface": "box", "box": [1, 1, 1], "cells": [2, 2, 2], "lattice": [3, 3, 3], "velocity": [2, 0, -1]},
-        {"name": "b", "surface": "box", "box": [1, 1, 1], "cells": [2, 2, 2], "lattice": [3, 3, 3], "position": [0.95, 0.1, 0.05]}],
-        "effects": [{"effect": "elastic", "young": 1e4}, {"effect": "hourglass"}, {"effect": "viscosity", "viscosity": 10},
+        {"name": "a", "surface": "box", "box": [1, 1, 1], "cells": [2, 2, 2], "lattice": [3, 3, 3],
+         "velocity": [2, 0, -1]},
+        {"name": "b", "surface": "box", "box": [1, 1, 1], "cells": [2, 2, 2], "lattice": [3, 3, 3],
+         "position": [0.95, 0.1, 0.05]}],
+        "effects": [{"effect": "elastic", "young": 1e4}, {"effect": "hourglass"},
+                    {"effect": "viscosity", "viscosity": 10},
                     {"effect": "ground", "point": [0, 0, -0.48], "stiffness": 1e5, "friction": 0.4},
                     {"effect": "contact", "stiffness": 1e6}, {"effect": "plasticity", "yield": 0.005, "creep": 5}]})");
 }

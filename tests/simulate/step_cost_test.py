@@ -18,7 +18,8 @@ for attempt in range(5):  # the machine is shared: a disturbed round says nothin
         for program in times:
             times[program].append(float(subprocess.run([program], capture_output=True, text=True, check=True).stdout))
     ratio = statistics.median(times[everything]) / statistics.median(times[alone])
-    print(f"with every effect in the program {statistics.median(times[everything]):.0f} ns a step, without {statistics.median(times[alone]):.0f}: {ratio:.3f}")
+    print(f"with every effect in the program {statistics.median(times[everything]):.0f} ns a step, "
+          f"without {statistics.median(times[alone]):.0f}: {ratio:.3f}")
     if ratio <= 1.05:
         sys.exit(0)
 sys.exit(1)

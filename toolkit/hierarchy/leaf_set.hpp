@@ -22,11 +22,4 @@ struct LeafSet {
 /// leaves that have not enough of them.
 LeafSet pack_leaves(const Bvh& bvh, const DeformableSurface& surface, const Vec3& rest_origin, std::size_t lanes);
 
-/// The fewest lanes for leaves of that size.
-constexpr std::size_t lanes_for(ClusterSize leaf)
-{
-    const std::size_t most = leaf.triangles > leaf.vertices ? leaf.triangles : leaf.vertices;
-    return most <= 4 ? 4 : most <= 8 ? 8 : 16;
-}
-
 } // namespace cinch

@@ -46,7 +46,8 @@ const char* const integrator_schema = R"json({
                 "tolerance": {
                     "type": "number",
                     "exclusiveMinimum": 0,
-                    "description": "greatest error of an acceleration that is left, over the greatest acceleration [1e-5]"
+                    "description":
+                        "greatest error of an acceleration that is left, over the greatest acceleration [1e-5]"
                 },
                 "iterations": {"type": "integer", "minimum": 1, "maximum": 100000}
             },

@@ -34,7 +34,6 @@ struct Layout {
 struct Header {
     std::vector<std::size_t> vertex_numbers; ///< that a vertex may have
     std::size_t vertices = 0, faces = 0;
-    bool edge_count_on_line = false; ///< something follows the number of faces on its line
 };
 
 struct Reading {

@@ -4,13 +4,16 @@
 namespace cinch {
 
 const char* const page_style =
-    R"css(:root { --ink: #1c2126; --soft: #5d6670; --line: #d9dde1; --wash: #f5f6f7; --link: #0b5c92; --same: #1a7346; --differs: #b4460f; --unknown: #6b7280; }
+    R"css(:root { --ink: #1c2126; --soft: #5d6670; --line: #d9dde1; --wash: #f5f6f7; --link: #0b5c92;
+  --same: #1a7346; --differs: #b4460f; --unknown: #6b7280; }
 * { box-sizing: border-box; }
 html { color-scheme: light; scroll-behavior: smooth; -webkit-text-size-adjust: 100%; }
-body { margin: 0; color: var(--ink); background: #fff; font: 16px/1.55 system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", "DejaVu Sans", sans-serif; }
+body { margin: 0; color: var(--ink); background: #fff;
+  font: 16px/1.55 system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", "DejaVu Sans", sans-serif; }
 main { max-width: 60rem; margin: 0 auto; padding: 2.5rem 1.25rem 5rem; }
 h1 { font-size: 2rem; line-height: 1.2; letter-spacing: -.015em; margin: 0 0 .6rem; }
-h2 { font-size: 1.35rem; line-height: 1.3; letter-spacing: -.01em; margin: 3.2rem 0 .8rem; padding-top: .8rem; border-top: 2px solid var(--ink); }
+h2 { font-size: 1.35rem; line-height: 1.3; letter-spacing: -.01em; margin: 3.2rem 0 .8rem;
+  padding-top: .8rem; border-top: 2px solid var(--ink); }
 h3 { font-size: 1.05rem; margin: 2rem 0 .4rem; }
 p { margin: .6rem 0; max-width: 44rem; }
 .lead { font-size: 1.1rem; color: var(--soft); }
@@ -22,7 +25,8 @@ nav a:hover { text-decoration: underline; }
 a.f { color: inherit; text-decoration: underline dotted #aab2ba 1px; text-underline-offset: .2em; }
 a.f:hover, a.f:focus { color: var(--link); text-decoration: underline solid; }
 .none { color: #9aa1a8; }
-.damage, .missing { padding: .55rem .9rem; border-left: 4px solid var(--differs); background: #fdf3ec; max-width: none; overflow-wrap: anywhere; }
+.damage, .missing { padding: .55rem .9rem; border-left: 4px solid var(--differs); background: #fdf3ec;
+  max-width: none; overflow-wrap: anywhere; }
 .missing { border-color: var(--unknown); background: var(--wash); }
 .table { overflow-x: auto; margin: 1.2rem 0 1.6rem; }
 table { border-collapse: collapse; font-size: .9rem; min-width: 60%; font-variant-numeric: tabular-nums; }

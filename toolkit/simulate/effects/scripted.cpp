@@ -85,7 +85,8 @@ extern const EffectKind scripted{"scripted", read, R"json([{
     },
     "required": ["axis", "rate"],
     "example": {
-        "nodes": {"nearest": [1, 0, 0], "count": 2}, "axis": [0, 0, 1], "centre": [0, 0, 0], "rate": 1, "ramp": 1, "until": 2
+        "nodes": {"nearest": [1, 0, 0], "count": 2}, "axis": [0, 0, 1], "centre": [0, 0, 0],
+        "rate": 1, "ramp": 1, "until": 2
     }
 }, {
     "description": "nodes that swing about an axis of the world",

@@ -3,8 +3,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "experiments/baselines/spatial_hash.hpp"
 #include "tests/collide/random_bodies.hpp"
-#include "toolkit/collide/spatial_hash.hpp"
 
 using namespace cinch;
 using namespace cinch::test;

@@ -8,7 +8,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "toolkit/collide/cell_grid.hpp"
+#include "experiments/baselines/cell_grid.hpp"
 
 using namespace cinch;
 

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0
-#include "toolkit/collide/cell_grid.hpp"
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/baselines/cell_grid.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,11 @@
-// SPDX-License-Identifier: Apache-2.0
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
 #include <span>
 #include <vector>
 
 #include "cinch/collider.hpp"
-#include "toolkit/collide/cell_grid.hpp"
+#include "experiments/baselines/cell_grid.hpp"
 
 namespace cinch {
 

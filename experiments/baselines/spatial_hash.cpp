@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0
-#include "toolkit/collide/spatial_hash.hpp"
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/baselines/spatial_hash.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/baselines/textbook.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
-
-#include "experiments/measure/baselines.hpp"
 
 namespace cinch {
 

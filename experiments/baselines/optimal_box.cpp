@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <limits>
+#include "experiments/baselines/optimal_box.hpp"
 
-#include "experiments/measure/baselines.hpp"
+#include <limits>
 
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "experiments/measure/optimal.cpp"
+#define HWY_TARGET_INCLUDE "experiments/baselines/optimal_box.cpp"
 #include <hwy/foreach_target.h>
 
 #include <hwy/highway.h>

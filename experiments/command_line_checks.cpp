@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The commands that prove, or look for what cannot be proven.
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "cinch/bounds.hpp"
+#include "experiments/command_line.hpp"
+#include "experiments/command_line_options.hpp"
+
+namespace cinch {
+
+void add_verify(CLI::App& app, VerifyOptions& o)
+{
+    CLI::App& command = *app.add_subcommand("verify", "prove every bound in exact arithmetic");
+    add_input(command, o.input);
+    const auto option = options_of(command);
+    add_methods(command, o.methods);
+    add_arithmetic(command, o.precision, o.passes);
+    option("--rest", o.rest_shape, "rest boxes of convex, eq12 and limited: aabb or obb [aabb]")
+        ->transform(one_of<RestShape>({{"aabb", RestShape::aabb}, {"obb", RestShape::obb}}))
+        ->option_text("SHAPE");
+    command.add_flag("--remember", o.remember, wrapped("begin the search for lambda where the last frame left it"));
+    option("--kdop", o.kdop, "directions of the bounds: " + kdop_names() + " [6]")
+        ->check(CLI::IsMember(std::vector(kdops.begin(), kdops.end())))
+        ->option_text("K");
+    option("--update", o.update,
+           "whose bounds: refit (all BVs by the methods), or those that stand after a collision query between a "
+           "scene's bodies: lazy (a cut by the methods, "
+           "merged above it, on demand below), front (all on demand), full (all merged from the vertices) [refit]")
+        ->transform(one_of<VerifiedUpdate>({{"refit", VerifiedUpdate::refit},
+                                            {"lazy", VerifiedUpdate::lazy},
+                                            {"full", VerifiedUpdate::full},
+                                            {"front", VerifiedUpdate::front}}))
+        ->option_text("KIND");
+    option("--leaf", o.leaf, "most triangles per leaf [1; 16 with --update]")
+        ->check(CLI::Range(1, 1000000))
+        ->option_text("N");
+    option("--threads", o.threads, "threads [all cores]")->check(CLI::Range(1, 1024))->option_text("N");
+    add_output(command, o.output);
+    option("--certificate", o.certificate,
+           "write a proof of every bound, for experiments/check_certificate.py; compressed if it ends in .gz")
+        ->option_text("FILE");
+    option("--vipr", o.vipr,
+           "write single bounds of the last frame (first BV of each level) as VIPR files, for viprchk")
+        ->option_text("DIR");
+    command.add_flag("--stats", o.stats, wrapped("memory too: what the kernels stream, and all rest data"));
+    command.add_flag(
+        "--volume", o.volume,
+        wrapped("exact volumes too: bound over true k-DOP, and planes without a facet, on a sample of each level"));
+    option("--sabotage", o.sabotage,
+           "for tests: damage the bounds, to see that it is found: no-rounding (drop the error terms), swap-interval "
+           "(swap one l and h), "
+           "lower-h (lower one h by 2^-53), stale (with --update lazy: the bounds of the frame before)")
+        ->transform(one_of<Sabotage>({{"no-rounding", Sabotage::no_rounding},
+                                      {"swap-interval", Sabotage::swap_interval},
+                                      {"lower-h", Sabotage::lower_h},
+                                      {"stale", Sabotage::stale}}))
+        ->option_text("KIND");
+    command.footer(R"(Examples:
+  cinch verify                               the 30,000-vertex brain, 509 nodes
+  cinch verify hand.ply --nodes 200          a mesh of yours, standard motion
+  cinch verify robot.glb --clip Robot_Dance  a skinned character
+  cinch verify rest.off --weights w.txt --transforms t.txt --json
+  cinch verify fish --certificate fish.jsonl.gz
+  cinch verify santa-ring-3 --update lazy    the bounds that collision reads
+
+Text form of weights and transforms ('#' starts a comment):
+  weights     'V J'; then per vertex 'n j1 w1 ... jn wn': nodes from 0, weights
+              >= 0, normalised on load
+  transforms  number of clips; per clip 'name K J', then K lines: time, and for
+              every node its row-major 3x4 matrix. Vertex k moves to the sum of
+              w_j M_j (x, y, z, 1).
+
+Exit status: 0 all proven, 1 a bound violated, 2 bad usage or input,
+130 interrupted (results so far are printed; a certificate is not written).)");
+}
+
+void add_corners(CLI::App& app, CornersOptions& o)
+{
+    CLI::App& command = *app.add_subcommand("corners", "true corners of a weight space, and maxima");
+    const auto option = options_of(command);
+    option("CASE", o.files, "case files, see below, or names of shipped cases (data/cases)")
+        ->required()
+        ->option_text("FILE...");
+    add_output(command, o.output, Draws::nothing);
+    command.add_flag("--list", o.list, wrapped("print every corner, as fractions p/q, as they are found"));
+    option("--limit", o.limit, "most corners to list per file [all]")
+        ->check(CLI::Range(1, std::numeric_limits<int>::max()))
+        ->option_text("N");
+    command.footer(R"(A case file is {"n":3,"l":[...],"h":[...],"b":[[...],...]}: weight intervals
+with 0 <= l <= h <= 1 and rows of extrema. Numbers are JSON numbers, or
+strings that are decimal or hexadecimal floating point ("0x1.8p-1").
+
+Examples:
+  cinch corners space.json          count, exact maximum, Eq. 12, bound per row
+  cinch corners *.json --json       the same as JSON Lines
+  cinch corners space.json --list --limit 10
+  cinch corners 038_hyper_n5        a case that comes with the program
+
+Exit status: 0 done, 1 a toolkit bound lies below the exact maximum, 2 bad
+usage or input (other files are still answered), 130 interrupted.)");
+}
+
+void add_stability(CLI::App& app, StabilityOptions& o)
+{
+    CLI::App& command = *app.add_subcommand("stability", "hard cases: expected, observed, and their bounds");
+    command.add_option("--case", o.cases, wrapped("only cases with one of these in their name [all]"))
+        ->delimiter(',')
+        ->option_text("TEXT,...");
+    command.add_flag("--list", o.list, "names of the cases, and what is expected");
+    command
+        .add_option("--without", o.missing,
+                    wrapped("take a safeguard away, to see which cases need it: hourglass, completion or projection"))
+        ->transform(one_of<Missing>({{"hourglass", Missing::hourglass},
+                                     {"completion", Missing::completion},
+                                     {"projection", Missing::projection}}))
+        ->option_text("NAME");
+    add_output(command, o.output, Draws::nothing);
+    command.footer(R"(Examples:
+  cinch stability                       all cases, about ten seconds
+  cinch stability --case inverted,flat
+  cinch stability --without completion  what the safeguard is for
+
+Exit status: 0 all pass, 1 a case fails, 2 bad usage, 130 interrupted.)");
+}
+
+void add_fuzz(CLI::App& app, FuzzOptions& o)
+{
+    CLI::App& command = *app.add_subcommand("fuzz", "every method against the exact side, random cases");
+    const auto option = options_of(command);
+    option("--seconds", o.seconds, "stop after so many seconds; 0 runs nothing")
+        ->check(within(0.0, 1e9))
+        ->option_text("X");
+    option("--cases", o.cases, "stop after so many cases [100,000 if no --seconds]")
+        ->check(CLI::NonNegativeNumber)
+        ->option_text("N");
+    option("--seed", o.seed, "case i of a seed is always the same [0]")->option_text("N");
+    option("--family", o.family, fmt::format("only this family: {} [all in turn]", fmt::join(fuzz_families(), ", ")))
+        ->check(CLI::Validator(
+            [](std::string& text) {
+                const auto known = fuzz_families();
+                return std::find(known.begin(), known.end(), text) != known.end() ? ""
+                                                                                  : "there is no family '" + text + "'";
+            },
+            ""))
+        ->option_text("NAME");
+    command
+        .add_option_function<std::string>(
+            "--shard",
+            [&o](const std::string& text) {
+                unsigned long long i = 0, n = 0;
+                int used = 0;
+                if (std::sscanf(text.c_str(), "%llu/%llu%n", &i, &n, &used) != 2 ||
+                    used != static_cast<int>(text.size()) || n == 0 || i >= n)
+                    throw CLI::ValidationError("--shard", "expected I/N with 0 <= I < N, found '" + text + "'");
+                o.shard = i;
+                o.shards = n;
+            },
+            wrapped("run every N-th case, beginning with the I-th, I from 0"))
+        ->option_text("I/N");
+    option(
+        "--resume", o.resume,
+        "keep the state in this file, and continue from it if it is there; it must be of the same program and options")
+        ->option_text("FILE");
+    option("--corpus", o.corpus, "where shrunk failures are saved [data/hard]")->option_text("DIR");
+    option("--threads", o.threads, "threads [all cores]")->check(CLI::Range(1, 1024))->option_text("N");
+    add_output(command, o.output, Draws::nothing);
+    option("--sabotage", o.defect,
+           "for tests: plant a defect: no-rounding, lower-h and small-box must be found, wrong-lambda and sum-order "
+           "must prove harmless; nothing is saved")
+        ->transform(one_of<Defect>({{"no-rounding", Defect::no_rounding},
+                                    {"wrong-lambda", Defect::wrong_lambda},
+                                    {"lower-h", Defect::lower_h},
+                                    {"sum-order", Defect::sum_order},
+                                    {"small-box", Defect::small_box}}))
+        ->option_text("KIND");
+    command.footer(R"(Examples:
+  cinch fuzz --seconds 600                 ten minutes, all families
+  cinch fuzz --cases 1000000 --resume s    can be stopped and continued
+  cinch fuzz --shard 0/4 --seconds 600     one of four machines
+
+A failure is shrunk to the smallest case that still fails and saved as JSON.
+Exit status: 0 no violation, 1 a violation, 2 bad usage, 130 interrupted (the
+summary is printed).)");
+}
+
+} // namespace cinch
