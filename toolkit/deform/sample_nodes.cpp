@@ -46,7 +46,8 @@ std::vector<Vec3> interior_points(const TriangleMesh& mesh, double points)
     const Vec3 size = high - low;
     if (!(size.minCoeff() > 0) || !std::isfinite(size.prod()))
         return {};
-    const double cell = std::cbrt(size.prod() / points);
+    const double unit = std::exp2(std::ilogb(size.maxCoeff())); // bits of the root would depend on the unit of length
+    const double cell = unit * std::cbrt((size / unit).prod() / points);
     if (!(size.maxCoeff() / cell < 4096)) // needle-like boxes
         return {};
     const auto columns_x = static_cast<std::size_t>(size.x() / cell) + 1,
