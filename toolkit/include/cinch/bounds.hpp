@@ -42,14 +42,15 @@ enum class RestNeed : std::uint8_t { boxes, local, points };
 
 /// What the program must know of a method: lists of methods derive from this table.
 struct MethodInfo {
-    Method method;
-    std::string_view name;
-    bool kernel;       ///< has SIMD kernels; the others are computed in doubles, BV by BV
-    bool weight_space; ///< holds for every w ∈ W' over the boxes that it needs
-    bool chosen;       ///< `best` chooses among these
-    RestNeed need;
+    Method method;         ///< its value
+    std::string_view name; ///< as options and records have it
+    bool kernel;           ///< has SIMD kernels; the others are computed in doubles, BV by BV
+    bool weight_space;     ///< holds for every w ∈ W' over the boxes that it needs
+    bool chosen;           ///< `best` chooses among these
+    RestNeed need;         ///< of the tree
 };
 
+/// A row for each method, in the order of the enumeration.
 inline constexpr std::array method_table = {
     MethodInfo{Method::convex, "convex", true, true, false, RestNeed::boxes},
     MethodInfo{Method::sphere, "sphere", false, false, false, RestNeed::boxes},
@@ -74,9 +75,12 @@ static_assert(
     }(),
     "rows in the order of the enumeration");
 
+/// A method's row.
 constexpr const MethodInfo& info_of(Method method) { return method_table[static_cast<std::size_t>(method)]; }
+/// A method's name.
 constexpr std::string_view name_of(Method method) { return info_of(method).name; }
 
+/// The method of that name; empty for a name that is none.
 constexpr std::optional<Method> named_method(std::string_view name)
 {
     for (const MethodInfo& info : method_table)
@@ -88,21 +92,26 @@ constexpr std::optional<Method> named_method(std::string_view name)
 /// One method or several, whose bounds are intersected: every valid upper bound may be intersected with every other.
 class Methods {
 public:
+    /// One method alone.
     constexpr Methods(Method method) : bits_(bit(method)) {}
+    /// Those in either set.
     constexpr Methods operator|(Methods other) const
     {
         return Methods(static_cast<std::uint16_t>(bits_ | other.bits_));
     }
+    /// Those that are not in `others`.
     constexpr Methods without(Methods others) const
     {
         return Methods(static_cast<std::uint16_t>(bits_ & ~others.bits_));
     }
+    /// Whether it is one of them.
     constexpr bool contains(Method method) const { return bits_ & bit(method); }
     /// True if no method is in this set that is not in `other`.
     constexpr bool within(Methods other) const { return (bits_ & ~other.bits_) == 0; }
+    /// Whether both hold the same methods.
     constexpr bool operator==(const Methods&) const = default;
 
-    /// Its methods one by one, in the order of the ladder.
+    /// \cond
     class Iterator {
     public:
         using difference_type = std::ptrdiff_t;
@@ -123,7 +132,10 @@ public:
     private:
         std::uint16_t bits_;
     };
+    /// \endcond
+    /// Its methods one by one, in the order of the ladder.
     constexpr Iterator begin() const { return Iterator(bits_); }
+    /// Where they end.
     constexpr Iterator end() const { return Iterator(0); }
 
     /// Those with which `wanted` agrees.
@@ -144,16 +156,19 @@ private:
     }
     std::uint16_t bits_;
 };
+/// Both.
 constexpr Methods operator|(Method a, Method b) { return Methods(a) | b; }
 
+/// Every method there is.
 inline constexpr Methods all_methods = Methods::where([](const MethodInfo&) { return true; });
+/// Those that have SIMD kernels.
 inline constexpr Methods kernel_methods = Methods::where([](const MethodInfo& m) { return m.kernel; });
 /// What `best` chooses among.
 inline constexpr Methods chosen_methods = Methods::where([](const MethodInfo& m) { return m.chosen; });
-/// Those that hold for every w ∈ W' over the BV's own rest box, and of these the ones with kernels, each at least as
-/// tight as the one before it.
+/// Those that hold for every w ∈ W' over the BV's own rest box.
 inline constexpr Methods box_methods =
     Methods::where([](const MethodInfo& m) { return m.weight_space && m.need == RestNeed::boxes; });
+/// Of these the ones with kernels, each at least as tight as the one before it.
 inline constexpr Methods ladder_methods =
     Methods::where([](const MethodInfo& m) { return m.weight_space && m.need == RestNeed::boxes && m.kernel; });
 /// Those that hold for every w ∈ W' over whatever boxes.
@@ -227,12 +242,15 @@ inline constexpr std::array<Axis, 13> all_axes = {{{1, 0, 0},
                                                    {1, -1, 0},
                                                    {1, 0, -1},
                                                    {0, 1, -1}}};
+/// The axes of the 18-DOP: 3 faces, 6 edges.
 inline constexpr std::array<Axis, 9> axes_18 = {
     {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {1, 0, 1}, {0, 1, 1}, {1, -1, 0}, {1, 0, -1}, {0, 1, -1}}};
 
 /// The k-DOPs there are, by their numbers of directions. (CMakeLists.txt reads this line.)
 inline constexpr std::array kdops = {6, 14, 18, 26};
+/// Of any k-DOP.
 inline constexpr std::size_t most_directions = *std::max_element(kdops.begin(), kdops.end());
+/// Whether there is a k-DOP with so many directions.
 inline constexpr bool is_kdop(int k) { return std::find(kdops.begin(), kdops.end(), k) != kdops.end(); }
 
 /// "6, 14, 18 or 26".
@@ -253,7 +271,7 @@ inline std::span<const Axis> axes_of(int k)
     return std::span(all_axes).first(static_cast<std::size_t>(k / 2));
 }
 
-/// Calls f.operator()<number of axes>() for a k-DOP. Throws std::invalid_argument for a k that is none.
+/// Calls `f.operator()<A>()`, A the number of axes, for a k-DOP. Throws std::invalid_argument for a k that is none.
 template <class F> void with_axes(int k, F&& f)
 {
     const bool found = [&]<std::size_t... i>(std::index_sequence<i...>)
@@ -282,11 +300,14 @@ enum class RestShape : std::uint8_t { aabb, obb };
 
 /// A closed axis-aligned box; none if lower > upper on any axis.
 struct Aabb {
-    Vec3 lower, upper;
+    Vec3 lower; ///< corner with the least coordinates
+    Vec3 upper; ///< and with the greatest
+    /// Borders included.
     bool contains(const Vec3& p) const
     {
         return (p.array() >= lower.array()).all() && (p.array() <= upper.array()).all();
     }
+    /// Whether both corners are the same.
     bool operator==(const Aabb&) const = default;
 };
 
@@ -302,9 +323,13 @@ public:
         std::copy(supports.begin(), supports.end(), support_.begin());
         k_ = static_cast<int>(supports.size());
     }
+    /// The number of directions.
     int k() const { return k_; }
+    /// k/2 axes.
     std::span<const Axis> axes() const { return axes_of(k_); }
+    /// The greatest a·x of axis number `axis`.
     double along(std::size_t axis) const { return support_[2 * axis]; }
+    /// The least one.
     double against(std::size_t axis) const { return -support_[2 * axis + 1]; }
     /// The first three axes are those of coordinates.
     Aabb aabb() const { return {{against(0), against(1), against(2)}, {along(0), along(1), along(2)}}; }

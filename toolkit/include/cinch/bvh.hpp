@@ -14,33 +14,35 @@ namespace cinch {
 
 /// W' = { w : Σ_j w_j = 1, l_j ≤ w_j ≤ h_j }, the limited convex weight space of one BV (Eq. 9). A view; owns nothing.
 struct WeightSpace {
-    std::span<const double> l, h; ///< multiples of 2^-53 in [0, 1], 0 ≤ l ≤ h
+    std::span<const double> l; ///< multiples of 2^-53 in [0, 1]
+    std::span<const double> h; ///< the same, ≥ l
 };
 
 /// The real box centre ± half contains its vertices.
 struct RestBox {
-    Vec3 centre = Vec3::Zero(), half = Vec3::Zero();
+    Vec3 centre = Vec3::Zero(); ///< in the unit of the surface
+    Vec3 half = Vec3::Zero();   ///< half extents, ≥ 0
 };
 
 /// The real parallelepiped centre + Σ β_i axis_i, |β_i| ≤ 1, contains its vertices. Its axes are nearly orthogonal: an
 /// OBB.
 struct OrientedBox {
-    Vec3 centre = Vec3::Zero();
-    Vec3 axis[3] = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+    Vec3 centre = Vec3::Zero();                                ///< in the unit of the surface
+    Vec3 axis[3] = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}; ///< half extents, with direction
 };
 
 /// w_j ≈ mean + gradient·y over a BV's vertices, y = x − pivot. Exactly, for every vertex: |w_j − mean − gradient·y| ≤
 /// residual and |(w_j − mean) y_i| ≤ moment_i. The means of a BV are multiples of 2^-53 that sum to exactly 1.
 struct WeightModel {
-    double mean = 0;
-    Vec3 gradient = Vec3::Zero();
-    double residual = 0;
-    Vec3 moment = Vec3::Zero();
+    double mean = 0;              ///< of w_j
+    Vec3 gradient = Vec3::Zero(); ///< of w_j, per unit of length
+    double residual = 0;          ///< of the affine model, at most
+    Vec3 moment = Vec3::Zero();   ///< per coordinate, at most
 };
 
 /// What one BV knows of its vertices in rest state. A view; owns nothing.
 struct RestBv {
-    RestBox box;
+    RestBox box;                         ///< of all vertices
     std::span<const std::uint32_t> node; ///< simulation nodes that influence it
     WeightSpace space;                   ///< parallel to `node`
     std::span<const RestBox> local;     ///< parallel to `node`: holds the vertices that the simulation node influences,
@@ -48,28 +50,33 @@ struct RestBv {
     Vec3 pivot = Vec3::Zero();          ///< origin of y in the weight model and of the points
     std::span<const WeightModel> model; ///< parallel to `node`
     std::span<const std::uint32_t>
-        point; ///< extreme vertices: max q·x over all vertices is at most that over these + slack·‖q‖
-    double slack = 0;
+        point;        ///< extreme vertices: max q·x over all vertices is at most that over these + slack·‖q‖
+    double slack = 0; ///< see `point`
     std::uint32_t vertex_influences = 0; ///< most simulation nodes of any one of its vertices
 };
 
 /// Most triangles, and most different vertices, of a cluster. At least 1 and 3.
 struct ClusterSize {
-    std::size_t triangles = 16, vertices = 16;
+    std::size_t triangles = 16; ///< at most
+    std::size_t vertices = 16;  ///< different ones, at most
 };
 
 /// One bounding volume in rest state: rest box, and where its triangles, children and influences lie in the Bvh.
 struct Bv {
-    RestBox box;                                          ///< contains every rest vertex
-    OrientedBox oriented;                                 ///< and so does this one
-    Vec3 pivot = Vec3::Zero();                            ///< mean of the rest vertices, see WeightModel
-    double slack = 0;                                     ///< see RestBv::point
-    std::uint32_t first_triangle = 0, triangle_count = 0; ///< in Bvh::triangle
-    std::uint32_t first_child = 0; ///< the other child is first_child + 1; 0 for a leaf (the root is nobody's child)
-    std::uint32_t first_influence = 0, influence_count = 0; ///< in Bvh::node, l, h, local, radius, model
-    std::uint32_t first_point = 0, point_count = 0;         ///< in Bvh::point
-    std::uint32_t vertex_influences = 0;                    ///< most simulation nodes of any one of its vertices
+    RestBox box;                      ///< contains every rest vertex
+    OrientedBox oriented;             ///< and so does this one
+    Vec3 pivot = Vec3::Zero();        ///< mean of the rest vertices, see WeightModel
+    double slack = 0;                 ///< see RestBv::point
+    std::uint32_t first_triangle = 0; ///< in Bvh::triangle
+    std::uint32_t triangle_count = 0; ///< from there on
+    std::uint32_t first_child = 0;    ///< the other child is first_child + 1; 0 for a leaf (the root is nobody's child)
+    std::uint32_t first_influence = 0;   ///< in Bvh::node, l, h, local, radius, model
+    std::uint32_t influence_count = 0;   ///< from there on
+    std::uint32_t first_point = 0;       ///< in Bvh::point
+    std::uint32_t point_count = 0;       ///< from there on
+    std::uint32_t vertex_influences = 0; ///< most simulation nodes of any one of its vertices
 
+    /// Whether it has no children.
     bool is_leaf() const { return first_child == 0; }
 };
 
@@ -84,23 +91,26 @@ enum class RestDetail : std::uint8_t {
 /// A binary tree of BVs over a surface, in flat arrays. BVs stand level by level, the root first, children after
 /// parents.
 struct Bvh {
-    RestDetail detail = RestDetail::all;
+    RestDetail detail = RestDetail::all; ///< what was prepared
     std::vector<Bv> bvs;                 ///< empty for a mesh without triangles
     std::vector<std::uint32_t> level;    ///< level i is BVs [level[i], level[i+1]); the last entry is bvs.size()
     std::vector<std::uint32_t> triangle; ///< a permutation of the mesh's triangles
     std::vector<std::uint32_t> node;  ///< per BV ascending: every simulation node that influences any of its vertices
-    std::vector<double> l, h;         ///< per entry of `node` the least and greatest weight over the BV's vertices
+    std::vector<double> l;            ///< per entry of `node` the least weight over the BV's vertices
+    std::vector<double> h;            ///< and the greatest one
     std::vector<RestBox> local;       ///< per entry of `node` a box around the BV's vertices that it influences
     std::vector<double> radius;       ///< per entry of `node` of a ball about that box's centre around these vertices
     std::vector<WeightModel> model;   ///< per entry of `node`
     std::vector<std::uint32_t> point; ///< extreme vertices of the BVs
 
+    /// Of all arrays.
     std::size_t bytes() const
     {
         auto size = [](const auto& all) { return all.size() * sizeof(all[0]); };
         return size(bvs) + size(level) + size(triangle) + size(node) + size(l) + size(h) + size(local) + size(radius) +
                size(model) + size(point);
     }
+    /// What one BV knows, as views of the arrays. bv < bvs.size().
     RestBv rest(std::size_t bv) const
     {
         const Bv& b = bvs[bv];

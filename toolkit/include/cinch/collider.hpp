@@ -24,11 +24,11 @@ enum class Update : std::uint8_t {
 
 /// How the BVs of a body are bounded.
 struct LazyOptions {
-    Methods methods = Method::best;
-    int kdop = 6;
-    Precision precision = Precision::float32;
-    Update update = Update::automatic;
-    RestShape rest_shape = RestShape::aabb; ///< for convex, eq12 and limited
+    Methods methods = Method::best;           ///< several are intersected
+    int kdop = 6;                             ///< 6, 14, 18 or 26
+    Precision precision = Precision::float32; ///< of the methods that have kernels
+    Update update = Update::automatic;        ///< how much of a tree a frame brings up to date
+    RestShape rest_shape = RestShape::aabb;   ///< for convex, eq12 and limited
     bool keep_cut = true;   ///< false: every BV by the methods when it is wanted, as for a front of pairs
     std::size_t lanes = 16; ///< 4, 8 or 16: room for the triangles and vertices of every leaf
 };
@@ -50,7 +50,11 @@ struct LazyCounts {
 
 /// Two triangles that intersect: ids of bodies, body_a < body_b, and indices of triangles of their meshes.
 struct TrianglePair {
-    std::uint32_t body_a, triangle_a, body_b, triangle_b;
+    std::uint32_t body_a;     ///< the lesser id
+    std::uint32_t triangle_a; ///< of body_a
+    std::uint32_t body_b;     ///< the greater id
+    std::uint32_t triangle_b; ///< of body_b
+    /// By body_a, triangle_a, body_b, triangle_b.
     auto operator<=>(const TrianglePair&) const = default;
 };
 
@@ -64,8 +68,9 @@ enum class Query : std::uint8_t {
 
 /// What a query did.
 struct QueryCounts {
-    std::size_t body_pairs = 0; ///< whose roots overlap
-    std::size_t box_tests = 0, leaf_pairs = 0;
+    std::size_t body_pairs = 0;       ///< whose roots overlap
+    std::size_t box_tests = 0;        ///< pairs of BVs
+    std::size_t leaf_pairs = 0;       ///< whose k-DOPs overlap
     std::uint64_t triangle_tests = 0; ///< pairs of triangles whose boxes overlap
     std::uint64_t in_double = 0;      ///< of these, decided by the vertices of evaluate_vertex and filtered signs;
     std::uint64_t in_exact = 0;       ///< by exact arithmetic; all others by floats with proven margins
@@ -85,21 +90,25 @@ public:
     /// What bodies have that are added without options of their own.
     explicit Collider(const LazyOptions& options = {});
     ~Collider();
+    /// What was moved from can only be assigned to or destroyed.
     Collider(Collider&&) noexcept;
+    /// The same.
     Collider& operator=(Collider&&) noexcept;
 
     /// Adds a body; builds its tree, with the leaf size and rest data that queries want. The surface must stay as it
     /// is, and alive. Queries need a new update() then. Throws std::invalid_argument for options that do not fit those
     /// of the collider: kdop, lanes and keep_cut are the same for all.
     BodyId add(const DeformableSurface& surface);
+    /// The same with options of its own.
     BodyId add(const DeformableSurface& surface, const LazyOptions& own);
     BodyId add(const DeformableSurface&& surface) = delete; ///< it is referred to
     BodyId add(const DeformableSurface&& surface, const LazyOptions& own) = delete;
     /// The same with a tree that is there, whose leaves have at most options.lanes triangles and vertices. It must stay
-    /// alive for methods without kernels (sphere, corners, vertices), unless it is moved in: then it is kept if it is
-    /// needed.
+    /// alive for methods without kernels (sphere, corners, vertices).
     BodyId add(const Bvh& bvh, const DeformableSurface& surface);
+    /// The same with a tree that the collider keeps if it is needed.
     BodyId add(Bvh&& bvh, const DeformableSurface& surface);
+    /// The same with options of its own.
     BodyId add(const Bvh& bvh, const DeformableSurface& surface, const LazyOptions& own);
     BodyId add(const Bvh& bvh, const DeformableSurface&& surface) = delete;
     BodyId add(Bvh&& bvh, const DeformableSurface&& surface) = delete;
@@ -123,12 +132,15 @@ public:
     /// whatever it throws, there is no frame then.
     void update(std::span<const BodyFrame> frames);
 
+    /// Takes a piece of the list; false: no more is wanted.
+    using Sink = std::function<bool(std::span<const TrianglePair>)>;
     /// Queries the frame. `sink` gets the pairs in order, piece by piece, and says whether to go on. True if there are
     /// any. These and unknown() throw std::logic_error if there is no frame: before the first update(), after one that
     /// threw, after add() and after remove().
-    using Sink = std::function<bool(std::span<const TrianglePair>)>;
     bool find(Query query, const Sink& sink);
+    /// All of the frame.
     std::vector<TrianglePair> pairs();
+    /// Whether there is one; stops at the first.
     bool any();
 
     /// Bodies of which nothing is known in this frame: a transform that has weight is not finite, or so large that

@@ -16,7 +16,7 @@ namespace cinch {
 /// made from.
 class Clip {
 public:
-    using Frame = std::vector<AffineMap>;
+    using Frame = std::vector<AffineMap>; ///< a map per simulation node
 
     Clip() = default;
     /// Frames that are computed. `time_s` and `frame` are called with i < count, by any thread, and always answer the
@@ -26,13 +26,14 @@ public:
     /// Frames that are there already, one per time. Throws std::invalid_argument where their numbers differ.
     Clip(std::string clip_name, std::vector<double> time_s, std::vector<Frame> frames);
 
+    /// Of a clip made by default 0.
     std::size_t frame_count() const { return count_; }
     /// i < frame_count(), else std::out_of_range; in seconds.
     double time_s(std::size_t i) const;
     /// The same for the maps. Throws InputError where a computed frame overflows.
     Frame frame(std::size_t i) const;
 
-    std::string name;
+    std::string name; ///< as files call it
 
 private:
     std::size_t checked(std::size_t i) const;
@@ -65,10 +66,13 @@ void evaluate(std::span<const Vec3> rest, const Weights& weights, std::span<cons
 /// and files, not for proofs.
 template <class T> class SurfaceEvaluator {
 public:
+    /// Packs the surface's weights into groups.
     explicit SurfaceEvaluator(const DeformableSurface& surface);
     explicit SurfaceEvaluator(const DeformableSurface&& surface) = delete; ///< it would refer to what is gone
     ~SurfaceEvaluator();
+    /// What was moved from can only be assigned to or destroyed.
     SurfaceEvaluator(SurfaceEvaluator&&) noexcept;
+    /// The same.
     SurfaceEvaluator& operator=(SurfaceEvaluator&&) noexcept;
 
     /// `out` has a place per vertex. In parallel. Non-finite maps give non-finite coordinates where they have weight,
@@ -85,8 +89,8 @@ extern template class SurfaceEvaluator<float>;
 
 /// Simulation nodes in rest position and the radius within which each influences the surface.
 struct SimulationNodes {
-    std::vector<Vec3> position;
-    double fill_distance = 0; ///< the farthest that any point of the volume or surface is from its nearest node
+    std::vector<Vec3> position; ///< in the unit of the surface
+    double fill_distance = 0;   ///< the farthest that any point of the volume or surface is from its nearest node
 };
 
 /// Farthest-point samples of the closed volume: the vertices and the points of a grid that have non-zero winding number

@@ -44,6 +44,7 @@ public:
 /// must stay alive.
 class UseExecutor {
 public:
+    /// Until the end of this value's life.
     explicit UseExecutor(Executor& executor);
     ~UseExecutor();
     UseExecutor(const UseExecutor&) = delete;

@@ -17,7 +17,7 @@ namespace cinch {
 
 /// The surface of a mesh file, and what else the file has.
 struct MeshFile {
-    TriangleMesh mesh;
+    TriangleMesh mesh; ///< in the file's unit
     std::vector<std::string>
         notes; ///< one line each, for the load report: what bounds nothing and was left out, what was not read
 };
@@ -43,12 +43,14 @@ std::vector<Clip> read_clips_text(const std::filesystem::path& path, std::uint32
 
 /// One key-framed curve of a glTF animation.
 struct Curve {
+    /// What of the bone it moves.
     enum class Target { translation, rotation, scale };
+    /// Between keys.
     enum class Interpolation { step, linear, cubic_spline };
 
-    std::uint32_t bone = 0; ///< index into Character::bones
-    Target target = Target::translation;
-    Interpolation interpolation = Interpolation::linear;
+    std::uint32_t bone = 0;                              ///< index into Character::bones
+    Target target = Target::translation;                 ///< of that bone
+    Interpolation interpolation = Interpolation::linear; ///< of its keys
     std::vector<double> time_s; ///< ascending; of keys at the same time the last one holds from then on
     /// Per key one value, or for a cubic spline in-tangent, value, out-tangent. Rotations are (x, y, z, w).
     std::vector<std::array<double, 4>> value;
@@ -59,14 +61,16 @@ struct Bone {
     std::int64_t parent = -1; ///< comes earlier in Character::bones, or -1
     bool is_matrix =
         false; ///< rest pose given by `matrix`; the three below are what it is made of, where it is animated
-    std::array<double, 16> matrix{}; ///< column-major, affine
-    std::array<double, 3> translation{0, 0, 0}, scale{1, 1, 1};
+    std::array<double, 16> matrix{};            ///< column-major, affine
+    std::array<double, 3> translation{0, 0, 0}; ///< in the file's unit
+    std::array<double, 3> scale{1, 1, 1};       ///< along its own axes
     std::array<double, 4> rotation{0, 0, 0, 1}; ///< x, y, z, w
 };
 
+/// A joint of a skin: a simulation node.
 struct Joint {
-    std::uint32_t bone;
-    AffineMap inverse_bind;
+    std::uint32_t bone;     ///< index into Character::bones
+    AffineMap inverse_bind; ///< from the mesh at rest to the bone
 };
 
 /// Whether all of a file's surface is wanted, or only what is modelled.
@@ -76,21 +80,23 @@ enum class Coverage { whole, partial };
 /// with equal position and weights are one vertex (glTF splits them where normals or texture coordinates differ), and
 /// a mesh that is drawn twice by the same skin, which puts it at the same place, is there once.
 struct Character {
-    std::string file; ///< for messages
-    TriangleMesh mesh;
-    Influences influences; ///< simulation node j is joints[j]
-    std::vector<Joint> joints;
-    std::vector<Bone> bones; ///< joints and what moves them; parents come first
+    std::string file;          ///< for messages
+    TriangleMesh mesh;         ///< in bind pose
+    Influences influences;     ///< simulation node j is joints[j]
+    std::vector<Joint> joints; ///< of all skins
+    std::vector<Bone> bones;   ///< joints and what moves them; parents come first
+    /// One of the file's.
     struct Animation {
-        std::string name;               ///< unique, printable; "anim0", "anim1", ... where the file gives none
-        double first_s = 0, last_s = 0; ///< from the first key to the last of all of its channels, whatever they move
-        std::vector<Curve> curves;
+        std::string name;                 ///< unique, printable; "anim0", "anim1", ... where the file gives none
+        double first_s = 0;               ///< the first key of all of its channels, whatever they move
+        double last_s = 0;                ///< the last one
+        std::vector<Curve> curves;        ///< those that move bones
         std::vector<std::string> missing; ///< what moves the surface in it and is not modelled
         std::vector<std::string> notes;   ///< what was changed, for the load report
         std::string fault; ///< why it cannot be sampled, as the message of an InputError; empty where it can
     };
-    std::vector<Animation> animations;
-    Animation rest; ///< the pose of the file, as an animation that moves nothing
+    std::vector<Animation> animations; ///< in the order of the file
+    Animation rest;                    ///< the pose of the file, as an animation that moves nothing
     std::vector<std::string>
         missing; ///< of the surface, in whatever animation: what is drawn or moves it and is not modelled
     std::vector<std::string> notes; ///< what was left out since it bounds nothing, for the load report

@@ -11,10 +11,11 @@
 
 namespace cinch {
 
+/// How a surface is bounded.
 struct RefitOptions {
-    Methods methods = Method::best; ///< several are intersected
-    int kdop = 6;                   ///< 6, 14, 18 or 26
-    Rounding rounding = Rounding::proven;
+    Methods methods = Method::best;       ///< several are intersected
+    int kdop = 6;                         ///< 6, 14, 18 or 26
+    Rounding rounding = Rounding::proven; ///< `plain` proves nothing
     Precision precision =
         Precision::float32;                 ///< of the methods that have kernels: all but sphere, corners and vertices
     int passes = 1;                         ///< evaluations of D for local, support and best
@@ -22,6 +23,7 @@ struct RefitOptions {
     bool remember = false;                  ///< λ of local, support and best begins where the last frame left it
 };
 
+/// What of a frame could not be bounded.
 struct RefitReport {
     std::size_t unbounded_nodes = 0; ///< simulation nodes whose transform is not finite, or too large for the
                                      ///< arithmetic of the methods that have kernels
@@ -37,6 +39,7 @@ public:
     Refitter(const Bvh&&, const DeformableSurface&, const RefitOptions&) = delete; ///< both are referred to
     Refitter(const Bvh&, const DeformableSurface&&, const RefitOptions&) = delete;
     ~Refitter();
+    /// What was moved from can only be destroyed.
     Refitter(Refitter&&) noexcept;
 
     /// supports[bv·k + d], d as in axes_of(k). In parallel over BVs; the same bits for every thread count and every

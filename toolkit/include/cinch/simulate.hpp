@@ -19,10 +19,11 @@ namespace cinch {
 /// A force of one's own on the simulation nodes of a body, beside the effects that the scene names.
 class OwnForce {
 public:
+    /// Where a body's simulation nodes are. Views.
     struct Nodes {
         std::span<const Vec3> position; ///< m, in the world
         std::span<const double> mass;   ///< kg
-        double time_s = 0;
+        double time_s = 0;              ///< since the start of the scene
     };
 
     virtual ~OwnForce() = default;
@@ -40,19 +41,23 @@ public:
     /// From text; `name` is for messages, and relative file names are taken from `folder`.
     SceneSimulation(std::string_view json, const std::string& name, const std::filesystem::path& folder);
     ~SceneSimulation();
+    /// What was moved from can only be assigned to or destroyed.
     SceneSimulation(SceneSimulation&&) noexcept;
+    /// The same.
     SceneSimulation& operator=(SceneSimulation&&) noexcept;
 
+    /// Bodies are 0, 1, ..., in the order of the scene.
     std::size_t body_count() const;
+    /// As the scene calls it.
     const std::string& name(std::size_t body) const;
     /// What a body's nodes deform; null where it has no surface. It stays where it is.
     const DeformableSurface* surface(std::size_t body) const;
     /// Acts from the next step on.
     void add(std::size_t body, std::unique_ptr<const OwnForce> force);
 
-    std::size_t frame() const; ///< 0 at the start
-    std::size_t frame_count() const;
-    double time_s() const;
+    std::size_t frame() const;       ///< 0 at the start
+    std::size_t frame_count() const; ///< that the scene asks for, the start included
+    double time_s() const;           ///< since the start
     /// To the next frame. The same bits for any number of threads. Throws std::runtime_error with time, body and reason
     /// for a step that cannot be solved; the state is that before it then.
     void advance();

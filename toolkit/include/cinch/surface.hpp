@@ -19,8 +19,8 @@
 
 namespace cinch {
 
-using Vec3 = Eigen::Vector3d;
-using Triangle = std::array<std::uint32_t, 3>;
+using Vec3 = Eigen::Vector3d;                  ///< a point or a direction
+using Triangle = std::array<std::uint32_t, 3>; ///< indices of its vertices
 
 /// Vertices and triangles exactly as a file declares them: nothing is welded, dropped or reordered,
 /// so duplicate and degenerate triangles and unreferenced vertices are legal.
@@ -31,8 +31,9 @@ struct TriangleMesh {
 
 /// x ↦ A x + t, row-major: A is m[r][0..2], t is m[r][3]. Applied to column vectors.
 struct AffineMap {
-    double m[3][4];
+    double m[3][4]; ///< rows of (A | t)
 };
+/// x ↦ x.
 inline constexpr AffineMap identity_map{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
 
 /// A p + t, in doubles: ((a₀x + a₁y) + a₂z) + t.
@@ -56,10 +57,10 @@ inline bool is_finite(const AffineMap& map)
 
 /// Weights of every vertex as a file gives them: not normalised. Vertex k owns entries [row[k], row[k+1]).
 struct Influences {
-    std::uint32_t node_count = 0; ///< simulation nodes (joints)
-    std::vector<std::uint32_t> row = {0};
-    std::vector<std::uint32_t> node; ///< ascending within a vertex, no node twice
-    std::vector<double> weight;      ///< finite, ≥ 0
+    std::uint32_t node_count = 0;         ///< simulation nodes (joints)
+    std::vector<std::uint32_t> row = {0}; ///< vertices + 1 entries
+    std::vector<std::uint32_t> node;      ///< ascending within a vertex, no node twice
+    std::vector<double> weight;           ///< finite, ≥ 0
     double step = 0; ///< between neighbouring numbers where weights are stored as integers, 1/255 or 1/65535, the
                      ///< coarsest; 0: floating point
 };
@@ -67,34 +68,38 @@ struct Influences {
 /// Convex weights of every vertex (Eq. 2). Vertex k owns entries [row[k], row[k+1]); they are > 0, multiples of 2^-53,
 /// ascending in node, and sum to exactly 1.
 struct Weights {
-    std::uint32_t node_count = 0; ///< simulation nodes
-    std::vector<std::uint32_t> row = {0};
-    std::vector<std::uint32_t> node;
-    std::vector<double> weight;
+    std::uint32_t node_count = 0;         ///< simulation nodes
+    std::vector<std::uint32_t> row = {0}; ///< vertices + 1 entries
+    std::vector<std::uint32_t> node;      ///< simulation nodes, vertex by vertex
+    std::vector<double> weight;           ///< parallel to `node`
 
+    /// One vertex's. A view.
     struct Row {
-        std::span<const std::uint32_t> node;
-        std::span<const double> weight;
+        std::span<const std::uint32_t> node; ///< ascending
+        std::span<const double> weight;      ///< parallel to `node`
     };
+    /// vertex < vertex_count().
     Row of(std::size_t vertex) const
     {
         const std::size_t first = row[vertex], count = row[vertex + 1] - first;
         return {std::span(node).subspan(first, count), std::span(weight).subspan(first, count)};
     }
+    /// How many vertices have weights.
     std::size_t vertex_count() const { return row.size() - 1; }
 };
 
 /// What normalising a file's weights changed. Dividing by their sum s changes every weight of a vertex by the share
 /// |1/s − 1|.
 struct WeightReport {
-    std::size_t vertices = 0;
+    std::size_t vertices = 0;   ///< all of them
     std::size_t normalised = 0; ///< vertices whose weights it changed by more than sum_rounding
     std::size_t beyond_steps =
         0; ///< of these, whose sum is off by more than storing weights as integers explains: half a step each
     double largest_change = 0; ///< share by which it changed the weights of these vertices at most
     std::size_t without_weight =
         0; ///< vertices whose weights were all 0: bound wholly to the first node they name; not among the others
-    double least_sum = 1, greatest_sum = 1; ///< of all vertices with weights
+    double least_sum = 1;    ///< of the weights of one vertex, over all with weights
+    double greatest_sum = 1; ///< the same
 };
 
 /// How far from 1 the sum of n weights may be that a program normalised in binary32 and stored so, or printed: with u =
@@ -108,8 +113,8 @@ Weights to_dyadic(const Influences& influences, WeightReport* report = nullptr);
 
 /// A surface in rest state with the weights that deform it: weights.vertex_count() == mesh.vertices.size().
 struct DeformableSurface {
-    TriangleMesh mesh;
-    Weights weights;
+    TriangleMesh mesh; ///< at rest
+    Weights weights;   ///< of each of its vertices
 };
 
 /// Bad input. what() is one line: file, place and reason, ready to print.
@@ -117,14 +122,17 @@ class InputError : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
 
+    /// "file: reason".
     static InputError in_file(const std::string& file, const std::string& reason)
     {
         return InputError(file + ": " + reason);
     }
+    /// "file:line: reason", lines counted from 1.
     static InputError at_line(const std::string& file, std::size_t line, const std::string& reason)
     {
         return InputError(file + ":" + std::to_string(line) + ": " + reason);
     }
+    /// "file: byte N: reason", bytes counted from 0.
     static InputError at_byte(const std::string& file, std::size_t byte, const std::string& reason)
     {
         return InputError(file + ": byte " + std::to_string(byte) + ": " + reason);
