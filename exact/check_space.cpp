@@ -11,7 +11,7 @@
 
 namespace cinch::exact {
 
-std::string space_fault(WeightSpace space, std::span<const double> b, std::span<const Claim> claims)
+std::string space_fault(WeightSpace space, std::span<const double> b, std::span<const ClaimedBound> claims)
 {
     const std::vector<Exact> exact(b.begin(), b.end());
     const auto best = optimum(space, exact);
@@ -27,7 +27,7 @@ std::string space_fault(WeightSpace space, std::span<const double> b, std::span<
         if (sorted[0] < eq12)
             return "Eq. 12 lies above the largest b by " + as_fraction(eq12 - sorted[0]);
     }
-    for (const Claim& claim : claims) {
+    for (const ClaimedBound& claim : claims) {
         const std::string name = claim.name;
         if (claim.bound == std::numeric_limits<double>::infinity())
             continue;

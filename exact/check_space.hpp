@@ -9,7 +9,7 @@
 namespace cinch::exact {
 
 /// A double that claims to bound max { Σ w_j b_j : w ∈ W' }.
-struct Claim {
+struct ClaimedBound {
     const char* name;
     double bound;
     bool has_lambda = false;
@@ -18,7 +18,7 @@ struct Claim {
 
 /// Empty if every claim holds exactly, the exact ladder optimum ≤ Eq. 12 ≤ max b is in order and feasibility is
 /// consistent; otherwise the first fault. Over an empty W' claims only have to be numbers. b and λ finite, 0 ≤ l ≤ h.
-std::string space_fault(WeightSpace space, std::span<const double> b, std::span<const Claim> claims);
+std::string space_fault(WeightSpace space, std::span<const double> b, std::span<const ClaimedBound> claims);
 
 /// Empty if the optimum equals the best of all corners, listed one by one; otherwise the difference. For small n.
 std::string corner_fault(WeightSpace space, std::span<const double> b);

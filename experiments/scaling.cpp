@@ -46,7 +46,7 @@ const std::vector<std::string> contestants = [] {
     return names;
 }();
 
-struct Times {
+struct MethodTimes {
     std::map<std::string, double> ns;
     double project_ns = 0;
     std::string best_kind;
@@ -72,7 +72,7 @@ template <class T> struct Kernel {
     }
 };
 
-template <class T> Times measure(const Input& input, const ScalingOptions& options)
+template <class T> MethodTimes measure(const Input& input, const ScalingOptions& options)
 {
     const Clip::Frame frame = input.clip.frame(input.clip.frame_count() - 1);
     const Bvh bvh = build_bvh(input.surface, std::numeric_limits<std::size_t>::max());
@@ -114,7 +114,7 @@ template <class T> Times measure(const Input& input, const ScalingOptions& optio
     calls.emplace_back(
         [&] { project(std::span<const AffineMap>(frame), best.packed.rest, 6, Rounding::proven, projected); });
     const std::vector<double> ns = race(calls, options.seconds);
-    Times times;
+    MethodTimes times;
     for (std::size_t i = 0; i < contestants.size(); ++i)
         times.ns[contestants[i]] = ns[i];
     times.project_ns = ns.back();
@@ -129,7 +129,7 @@ std::string microseconds(double ns)
     return ns < 1e5 ? fmt::format("{:.2f}", ns / 1e3) : grouped(static_cast<std::size_t>(ns / 1e3 + 0.5));
 }
 
-std::vector<Figure> figures_of(const Times (&times)[3][3])
+std::vector<Figure> figures_of(const MethodTimes (&times)[3][3])
 {
     std::vector<Figure> figures;
     auto figure = [&](std::string what, double value, const char* format, std::string target, bool reached) {
@@ -148,7 +148,7 @@ std::vector<Figure> figures_of(const Times (&times)[3][3])
                invariance <= 1.1);
     }
     std::vector<double> size(std::begin(node_counts), std::end(node_counts)), ns;
-    for (const Times& t : times[1])
+    for (const MethodTimes& t : times[1])
         ns.push_back(t.ns.at("best"));
     const double slope = log_slope(size, ns), optimal = times[2][2].ns.at("optimal") / times[2][2].ns.at("best");
     figure("exponent of n in the default's time", slope, "{:.2f}", "<= 1", slope <= 1);
@@ -195,8 +195,8 @@ int scaling_of(const ScalingOptions& options, const Provenance& from, RecordOutp
                 what.nodes = node_counts[i];
                 input = or_leave([what] { return load_input(what); });
             }
-            const Times times = options.precision == Precision::float32 ? measure<float>(input, options)
-                                                                        : measure<double>(input, options);
+            const MethodTimes times = options.precision == Precision::float32 ? measure<float>(input, options)
+                                                                              : measure<double>(input, options);
             for (const std::string& name : contestants)
                 records.push_back({{"experiment", "scaling"},
                                    {"input", input.name},
@@ -241,7 +241,7 @@ int scaling(const ScalingOptions& options)
     if (!options.input.empty())
         return scaling_of(options, from, output);
     catch_interrupt();
-    Times times[3][3];
+    MethodTimes times[3][3];
     std::vector<nlohmann::ordered_json> records;
     try {
         Progress progress("measuring sizes", 9);
@@ -299,9 +299,9 @@ int scaling(const ScalingOptions& options)
         std::vector<std::string> row{name == "unproven" ? "best, unproven" : name};
         std::vector<double> size(std::begin(node_counts), std::end(node_counts)), ns;
         for (const auto& by_nodes : times)
-            for (const Times& t : by_nodes)
+            for (const MethodTimes& t : by_nodes)
                 row.push_back(microseconds(t.ns.at(name)));
-        for (const Times& t : times[1])
+        for (const MethodTimes& t : times[1])
             ns.push_back(t.ns.at(name));
         row.push_back(fmt::format("{:.2f}", log_slope(size, ns)));
         rows.push_back(std::move(row));

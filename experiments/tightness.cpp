@@ -12,6 +12,7 @@
 
 #include "cinch/surface.hpp"
 #include "exact/verifier.hpp"
+#include "experiments/measure/box_radius.hpp"
 #include "experiments/measure/race.hpp"
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/number.hpp"
@@ -44,11 +45,6 @@ const std::vector<Methods> usual = [] {
     return std::vector<Methods>(all.begin(), all.end());
 }();
 
-double radius(std::span<const double> supports)
-{
-    return 0.5 * std::hypot(supports[0] + supports[1], supports[2] + supports[3], supports[4] + supports[5]);
-}
-
 void add_frame(const Bvh& bvh, std::span<const double> truth, std::span<const double> supports,
                const exact::FrameVerdict* verdict, std::vector<LevelRatio>& levels)
 {
@@ -56,7 +52,8 @@ void add_frame(const Bvh& bvh, std::span<const double> truth, std::span<const do
     for (std::size_t l = 0; l < levels.size(); ++l) {
         levels[l].bvs = bvh.level[l + 1] - bvh.level[l];
         for (std::size_t bv = bvh.level[l]; bv < bvh.level[l + 1]; ++bv) {
-            const double whole = radius(truth.subspan(6 * bv, 6)), ratio = radius(supports.subspan(6 * bv, 6)) / whole;
+            const double whole = box_radius(truth.subspan(6 * bv, 6)),
+                         ratio = box_radius(supports.subspan(6 * bv, 6)) / whole;
             if (!(whole > 0 && std::isfinite(ratio)))
                 continue;
             ++levels[l].measured;

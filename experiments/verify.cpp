@@ -137,8 +137,8 @@ Bvh damaged_bvh(const DeformableSurface& surface, const VerifyOptions& options)
 }
 
 // What refits and verifies a body of the inputs, which it shares.
-struct Prepared {
-    Prepared(std::shared_ptr<const Inputs> shared, const Input& input, const VerifyOptions& options)
+struct PreparedInput {
+    PreparedInput(std::shared_ptr<const Inputs> shared, const Input& input, const VerifyOptions& options)
         : inputs(std::move(shared)), bvh(damaged_bvh(input.surface, options)),
           verifier(input.surface, bvh, throw_if_interrupted), refit(bvh, input.surface, refit_options(options)),
           ladder(bvh, input.surface, refit_options(options))
@@ -156,8 +156,8 @@ struct Prepared {
 void verify_body(const std::shared_ptr<const Inputs>& inputs, const Input& input, const VerifyOptions& options,
                  LineFile* certificate, VerifyTotals& totals)
 {
-    const std::unique_ptr<Prepared> prepared =
-        or_leave([inputs, &input, options] { return std::make_unique<Prepared>(inputs, input, options); });
+    const std::unique_ptr<PreparedInput> prepared =
+        or_leave([inputs, &input, options] { return std::make_unique<PreparedInput>(inputs, input, options); });
     const Bvh& bvh = prepared->bvh;
     const exact::Verifier& verifier = prepared->verifier;
     Refitter& refit = prepared->refit;

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
+#include "experiments/measure/box_radius.hpp"
 #include "experiments/measure/race.hpp"
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/number.hpp"
@@ -26,8 +27,6 @@ struct Row {
                                ///< NaN: none known
     bool pareto = false;
 };
-
-double radius(std::span<const double> s) { return 0.5 * std::hypot(s[0] + s[1], s[2] + s[3], s[4] + s[5]); }
 
 // Faster, tighter and proven, or as good in each and better in one: then the other need not be considered.
 bool dominates(const Row& a, const Row& b)
@@ -85,8 +84,8 @@ std::vector<Row> measure(const CostSample& sample, int kdop, double seconds)
         std::size_t below = 0, measured = 0;
         double worst = 0;
         for (std::size_t b = 0; b < sample.bvs.size(); ++b) {
-            const double whole = radius(std::span(vertices).subspan(b * k, k)),
-                         ratio = radius(std::span(supports[i]).subspan(b * k, k)) / whole;
+            const double whole = box_radius(std::span(vertices).subspan(b * k, k)),
+                         ratio = box_radius(std::span(supports[i]).subspan(b * k, k)) / whole;
             if (whole > 0 && std::isfinite(ratio)) {
                 row.looseness += ratio;
                 ++measured;
@@ -195,8 +194,8 @@ int cost(const CostOptions& options)
     try {
         Progress progress("measuring gaps and k-DOPs", wanted);
         auto step = [&](auto&& made, auto& all) {
-            for (auto& one : made)
-                all.push_back(std::move(one));
+            for (auto& row : made)
+                all.push_back(std::move(row));
             progress.done(++done);
         };
         step(dual_gaps(input, options.leaf), gaps);
@@ -211,10 +210,10 @@ int cost(const CostOptions& options)
             step(measure(sample, kdop, options.seconds), rows);
     } catch (const Interrupted&) { // whole k-DOPs and inputs are kept
     }
-    const std::size_t kdops = done - std::min(done, 1 + others.size());
+    const std::size_t measured = done - std::min(done, 1 + others.size());
     const Completeness completeness{1, 1, done == wanted,
                                     done == wanted ? ""
-                                                   : interrupted_after(kdops, options.kdops.size(),
+                                                   : interrupted_after(measured, options.kdops.size(),
                                                                        options.kdops.size() == 1 ? "k-DOP" : "k-DOPs")};
     std::vector<nlohmann::ordered_json> records;
     auto number = [](double x) { return std::isfinite(x) ? nlohmann::ordered_json(x) : nlohmann::ordered_json(); };

@@ -9,7 +9,7 @@
 namespace cinch {
 namespace {
 
-template <class T> struct Prepared {
+template <class T> struct PreparedKernel {
     PackedBvh<T> packed;
     ProjectedMaps<T> maps;
     KernelScratch<T> scratch;
@@ -19,7 +19,7 @@ template <class T> void add(const CostSample& sample, int kdop, const std::vecto
                             std::vector<CostContestant>& all)
 {
     for (const Rounding rounding : {Rounding::plain, Rounding::proven}) {
-        const auto prepared = std::make_shared<Prepared<T>>();
+        const auto prepared = std::make_shared<PreparedKernel<T>>();
         prepared->packed = pack<T>(sample.bvh, sample.surface, kinds);
         project(sample.maps, prepared->packed.rest, kdop, rounding, prepared->maps);
         const bool proven = rounding == Rounding::proven;

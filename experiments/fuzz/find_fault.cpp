@@ -39,12 +39,13 @@ std::string space_fault(const Case& problem, Defect defect)
     const double convex = greatest, at_second = dual_bound(space, seen.b, second, rounding),
                  at_best = dual_bound(space, seen.b, best, rounding);
     const double eq12 = std::min(convex, at_second), limited = std::min(eq12, at_best);
-    const exact::Claim claims[] = {{"convex", convex},
-                                   {"eq12", eq12},
-                                   {"limited", limited},
-                                   {"D at the second-largest b", at_second, true, second},
-                                   {"D at the best lambda", at_best, std::isfinite(best), best},
-                                   {"D at the middle", dual_bound(space, seen.b, middle, rounding), true, middle}};
+    const exact::ClaimedBound claims[] = {
+        {"convex", convex},
+        {"eq12", eq12},
+        {"limited", limited},
+        {"D at the second-largest b", at_second, true, second},
+        {"D at the best lambda", at_best, std::isfinite(best), best},
+        {"D at the middle", dual_bound(space, seen.b, middle, rounding), true, middle}};
     std::string fault = exact::space_fault(problem.space(), problem.b[0], claims);
     if (fault.empty() && problem.l.size() <= 6)
         fault = exact::corner_fault(problem.space(), problem.b[0]);

@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
 
+#include "toolkit/simulate/configuration.hpp"
 #include "toolkit/simulate/stream.hpp"
 
 namespace cinch {
@@ -102,14 +103,13 @@ Reference fitted(const BodyModel& model, const Reference& present, const Field& 
         const Vec3 x = (body.rest[i] - present.centre) - rest;
         a += body.mass[i] * (present.rotation * x + (at(u, i) - mean)) * x.transpose();
     }
-    const Eigen::JacobiSVD<Mat3> svd(a, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const Eigen::JacobiSVD<Mat3, Eigen::NoQRPreconditioner> svd(a, Eigen::ComputeFullU | Eigen::ComputeFullV);
     if (a.allFinite() && svd.singularValues()[0] > 0) {
         const Mat3 &left = svd.matrixU(), &right = svd.matrixV(), r = left * right.transpose();
+        const Vec3 along = present.rotation * right.col(0);
         Mat3 turned = r.determinant() > 0 ? r : Mat3(left * Vec3(1, 1, -1).asDiagonal() * right.transpose());
         if (!(svd.singularValues()[1] > 1e-6 * svd.singularValues()[0])) // a line: by the least turn
-            turned =
-                Eigen::Quaterniond::FromTwoVectors(present.rotation * right.col(0), left.col(0)).toRotationMatrix() *
-                present.rotation;
+            turned = present.rotation + rotation_change(along, left.col(0) - along) * present.rotation;
         if ((turned - present.rotation).norm() > 0x1p-26)
             to.rotation = turned;
     }

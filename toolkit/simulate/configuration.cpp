@@ -24,8 +24,8 @@ Vec3 normal_change(const Vec3& t, const Vec3& s, const Vec3& a, const Vec3& b)
     return (longer.squaredNorm() > 0 ? longer.unitOrthogonal() : Vec3::UnitZ()) - n;
 }
 
-// The least rotation from f, of length 1, to the direction of f + a, less I. With the axis v = f × g, g that direction,
-// and cosine c: [v] + [v]² / (1 + c).
+} // namespace
+
 Mat3 rotation_change(const Vec3& f, const Vec3& a)
 {
     const double size = (f + a).norm();
@@ -41,8 +41,6 @@ Mat3 rotation_change(const Vec3& f, const Vec3& a)
     cross << 0, -v[2], v[1], v[2], 0, -v[0], -v[1], v[0], 0;
     return cross + cross * cross / (1 + cosine);
 }
-
-} // namespace
 
 NeighbourLists lists_of(const MeshlessBody& body) { return {body.row, body.neighbour, body.record}; }
 

@@ -38,6 +38,10 @@ struct Configuration {
 /// Whether models without completion are to be seen (stability experiments break them on purpose).
 enum class Completion { on, off };
 
+/// The least rotation from f, of length 1, to the direction of f + a, less I. With the axis v = f × g, g that direction,
+/// and cosine c: [v] + [v]² / (1 + c). 0 where there is no direction.
+Mat3 rotation_change(const Vec3& f, const Vec3& a);
+
 NeighbourLists lists_of(const MeshlessBody& body);
 
 /// D, H and J of displacements u from a shape at rest that is turned by `rotation`. Isolated nodes have J = I.

@@ -31,7 +31,7 @@ struct Layout {
     } faces;
 };
 
-struct Header {
+struct OffHeader {
     std::vector<std::size_t> vertex_numbers; ///< that a vertex may have
     std::size_t vertices = 0, faces = 0;
 };
@@ -57,7 +57,7 @@ bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 // The keyword, which may be left out, in any case but for N (normals) and n (a dimension follows), and up to the number
 // of faces.
-Header read_header(TextScan& scan)
+OffHeader read_header(TextScan& scan)
 {
     std::string_view word = scan.word_across_lines("the word OFF");
     std::size_t numbers = 3;
@@ -89,7 +89,7 @@ Header read_header(TextScan& scan)
             word = scan.word_across_lines("the number of vertices");
         }
     }
-    Header header;
+    OffHeader header;
     header.vertex_numbers = {numbers};
     if (colours) // r g b a; programs also write r g b
         header.vertex_numbers = {numbers + 4, numbers + 3};
@@ -111,7 +111,7 @@ std::size_t words_left(TextScan& scan)
     return count;
 }
 
-void read_vertices(TextScan& scan, const Header& header, std::size_t vertex_numbers, Reading& out)
+void read_vertices(TextScan& scan, const OffHeader& header, std::size_t vertex_numbers, Reading& out)
 {
     std::vector<Vec3>& vertices = out.file.mesh.vertices;
     vertices.reserve(std::min(header.vertices, scan.bytes_left() / 6 + 1));
@@ -140,7 +140,7 @@ void read_vertices(TextScan& scan, const Header& header, std::size_t vertex_numb
     }
 }
 
-void read_faces(TextScan& scan, const Header& header, Layout::Faces layout, MeshFile& out)
+void read_faces(TextScan& scan, const OffHeader& header, Layout::Faces layout, MeshFile& out)
 {
     const bool on_one_line = layout == Layout::Faces::line_each, joined = layout == Layout::Faces::joined;
     auto next = [&](const char* what) { return on_one_line ? scan.word() : scan.word_across_lines(what); };
@@ -173,7 +173,7 @@ void read_faces(TextScan& scan, const Header& header, Layout::Faces layout, Mesh
     note_left_out({{small, "face of fewer than three vertices", "faces of fewer than three vertices"}}, out.notes);
 }
 
-Reading read_body(TextScan scan, const Header& header, const Layout& layout)
+Reading read_body(TextScan scan, const OffHeader& header, const Layout& layout)
 {
     Reading out;
     if (layout.edge_count)
@@ -188,7 +188,7 @@ Reading read_body(TextScan scan, const Header& header, const Layout& layout)
 }
 
 // The ways in which the rest may be meant, the most usual first.
-std::vector<Layout> layouts(TextScan scan, const Header& header)
+std::vector<Layout> layouts(TextScan scan, const OffHeader& header)
 {
     const bool more_on_line = !TextScan(scan).word().empty();
     // Without it on the line of the other counts, the number of edges is alone on the next, or left out.
@@ -205,7 +205,7 @@ std::vector<Layout> layouts(TextScan scan, const Header& header)
 }
 
 // Whether the first line of vertices has several; it decides what an error is about.
-bool seems_joined(TextScan scan, const Header& header, bool edge_count)
+bool seems_joined(TextScan scan, const OffHeader& header, bool edge_count)
 {
     if (edge_count)
         skip_edge_count(scan);
@@ -221,7 +221,7 @@ MeshFile parse_off(std::string_view bytes, const std::string& file)
 {
     require_default_arithmetic();
     TextScan scan(bytes, file, {.comment = '#', .comments_end_words = true});
-    const Header header = read_header(scan);
+    const OffHeader header = read_header(scan);
     const std::vector<Layout> ways = layouts(scan, header);
     std::vector<InputError> refusals;
     std::optional<Reading> found;

@@ -223,7 +223,7 @@ Claim claim(const char* says, const char* where, const Traced& decides, bool con
             decides.known() ? std::move(answer) : ""};
 }
 
-std::vector<Claim> claims_of(const Results& results)
+std::vector<Claim> collide_claims(const Results& results)
 {
     std::vector<Traced> totals, refits, clusters, growth, hash, obb, rest, dops, query;
     for (int ring = 1; ring <= 8; ++ring) {
@@ -299,7 +299,7 @@ Section collide_section(const Results& results)
     section.body += fishes;
     if (rings || !fishes.empty()) {
         section.body += today(results);
-        section.claims = claims_of(results);
+        section.claims = collide_claims(results);
     }
     for (const html::ChartFigure& chart : collide_charts(results))
         section.body += html::chart(chart);

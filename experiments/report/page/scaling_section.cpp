@@ -91,7 +91,7 @@ std::string rows_of(const Results& results, std::size_t vertices, const char* pa
     return html::block(rows);
 }
 
-std::vector<Claim> claims_of(const Results& results)
+std::vector<Claim> scaling_claims(const Results& results)
 {
     std::vector<Claim> claims;
     auto add = [&](std::string says, const Traced& decides, bool confirmed, std::string answer) {
@@ -158,7 +158,7 @@ Section scaling_section(const Results& results)
                                    {html::row({html::head_cell(""), html::head_cell("65 nodes"), html::head_cell("225"),
                                                html::head_cell("509"), html::head_cell("optimal")})},
                                    blocks);
-        section.claims = claims_of(results);
+        section.claims = scaling_claims(results);
     }
     for (const html::ChartFigure& chart : charts)
         section.body += html::chart(chart);

@@ -122,7 +122,7 @@ std::string attribution(const Results& results)
                blocks);
 }
 
-std::vector<Claim> claims_of(const Results& results)
+std::vector<Claim> tightness_claims(const Results& results)
 {
     std::vector<Claim> claims;
     auto add = [&](const char* says, const char* where, const Traced& decides, bool confirmed, std::string answer) {
@@ -191,7 +191,7 @@ Section tightness_section(const Results& results)
                                                html::head_cell("default, here"), html::head_cell("paper / here")})},
                                    blocks);
         section.body += attribution(results);
-        section.claims = claims_of(results);
+        section.claims = tightness_claims(results);
     }
     for (const auto& charts : {level_charts(results), sweep_charts(results), loss_charts(results)})
         for (const html::ChartFigure& chart : charts)

@@ -2,7 +2,7 @@
 # cmake -DOUTPUT=x.cpp -DNAME=n -DFILES=a,b -P embed.cmake: the text of the files, one after the other, as cinch::embedded::n.
 # By way of hex digits, for which CMake has no other meaning.
 string(REPLACE "," ";" files "${FILES}")
-set(code "#include \"experiments/report/view/embedded.hpp\"\n\nnamespace cinch::embedded {\n\nstatic constexpr char text[] =\n    \"\"")
+set(code "#include \"experiments/report/view/embedded.hpp\"\n\nnamespace cinch::embedded {\n\nstatic constexpr char ${NAME}_text[] =\n    \"\"")
 foreach(file IN LISTS files)
   file(READ ${file} text HEX)
   string(LENGTH "${text}" digits)
@@ -14,4 +14,4 @@ foreach(file IN LISTS files)
     math(EXPR at "${at} + 16000")
   endwhile()
 endforeach()
-file(WRITE ${OUTPUT} "${code};\n\nconst std::string_view ${NAME}(text, sizeof text - 1);\n\n} // namespace cinch::embedded\n")
+file(WRITE ${OUTPUT} "${code};\n\nconst std::string_view ${NAME}(${NAME}_text, sizeof ${NAME}_text - 1);\n\n} // namespace cinch::embedded\n")

@@ -12,7 +12,7 @@
 namespace cinch {
 namespace {
 
-constexpr const char* effect_name = "contact";
+constexpr const char* contact_name = "contact";
 const ContactPoints points;
 
 // A contact in a Memory: corners (whole numbers below 2³², which doubles hold), shares, normal, offset and stiffness,
@@ -63,7 +63,7 @@ template <class Visit> void each_weight(const Configuration& at, const Contact& 
 
 } // namespace
 
-BodyContact::BodyContact() : Effect(effect_name) {}
+BodyContact::BodyContact() : Effect(contact_name) {}
 
 Memory BodyContact::remembering(std::span<const Contact> contacts, const Vec3& origin)
 {
@@ -147,7 +147,7 @@ double BodyContact::longest_step(const Configuration& at) const
 
 namespace {
 
-EffectPlan read(JsonFields& f)
+EffectPlan read_contact(JsonFields& f)
 {
     EffectPlan plan;
     const double stiffness = f.number("stiffness", JsonFields::positive());
@@ -168,7 +168,7 @@ EffectPlan read(JsonFields& f)
 } // namespace
 
 namespace effects {
-extern const EffectKind contact{effect_name, read, R"json([{
+extern const EffectKind contact{contact_name, read_contact, R"json([{
     "description": "bodies that push each other apart where they overlap",
     "properties": {"stiffness": {"type": "number", "exclusiveMinimum": 0, "description": "Pa/m: pressure per depth"}},
     "required": ["stiffness"],

@@ -6,11 +6,11 @@
 namespace cinch {
 namespace {
 
-constexpr const char* effect_name = "damping";
+constexpr const char* damping_name = "damping";
 
 class MassDamping : public Effect {
 public:
-    explicit MassDamping(double rate) : Effect(effect_name), rate_(rate) {}
+    explicit MassDamping(double rate) : Effect(damping_name), rate_(rate) {}
 
     bool dissipates() const override { return true; }
     void add_damping(const Configuration& c, Curvature out) const override
@@ -63,7 +63,7 @@ private:
     double rate_;
 };
 
-EffectPlan read(JsonFields& f)
+EffectPlan read_damping(JsonFields& f)
 {
     const double rate = f.number("rate", JsonFields::not_negative());
     return {[rate](BodyBuilder& body) { body.add(make_mass_damping(rate)); }};
@@ -72,7 +72,7 @@ EffectPlan read(JsonFields& f)
 } // namespace
 
 namespace effects {
-extern const EffectKind damping{effect_name, read, R"json([{
+extern const EffectKind damping{damping_name, read_damping, R"json([{
     "description": "slows down all motion",
     "properties": {"rate": {"type": "number", "minimum": 0, "description": "1/s"}},
     "required": ["rate"],

@@ -7,7 +7,7 @@
 namespace cinch {
 namespace {
 
-EffectPlan read(JsonFields& f)
+EffectPlan read_elastic(JsonFields& f)
 {
     const std::string model = f.text("model", "neo-hookean");
     if (model != "neo-hookean" && model != "stvk" && model != "stvk-paper")
@@ -29,7 +29,7 @@ EffectPlan read(JsonFields& f)
 } // namespace
 
 namespace effects {
-extern const EffectKind elastic{elastic_name, read, R"json([{
+extern const EffectKind elastic{elastic_name, read_elastic, R"json([{
     "description": "an elastic material",
     "properties": {
         "model": {"enum": ["neo-hookean", "stvk", "stvk-paper"]},

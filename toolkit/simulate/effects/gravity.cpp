@@ -6,11 +6,11 @@
 namespace cinch {
 namespace {
 
-constexpr const char* effect_name = "gravity";
+constexpr const char* gravity_name = "gravity";
 
 class Gravity : public Effect {
 public:
-    explicit Gravity(const Vec3& acceleration) : Effect(effect_name), acceleration_(acceleration) {}
+    explicit Gravity(const Vec3& acceleration) : Effect(gravity_name), acceleration_(acceleration) {}
 
     // Of displacements, and of the reference as a whole: what a step compares are displacements, and their energy is
     // not to drown in that of where they are.
@@ -35,7 +35,7 @@ private:
     Vec3 acceleration_;
 };
 
-EffectPlan read(JsonFields& f)
+EffectPlan read_gravity(JsonFields& f)
 {
     const Vec3 acceleration = f.vector("acceleration", Vec3(0, 0, -9.81));
     return {[acceleration](BodyBuilder& body) { body.add(make_gravity(acceleration)); }};
@@ -44,7 +44,7 @@ EffectPlan read(JsonFields& f)
 } // namespace
 
 namespace effects {
-extern const EffectKind gravity{effect_name, read, R"json([{
+extern const EffectKind gravity{gravity_name, read_gravity, R"json([{
     "description": "a force m g",
     "properties": {"acceleration": {"$ref": "#/$defs/vector", "description": "m/s2 [0, 0, -9.81]"}},
     "example": {"acceleration": [0, 0, -1]}

@@ -12,7 +12,7 @@
 namespace cinch {
 namespace {
 
-constexpr const char* effect_name = "ground";
+constexpr const char* ground_name = "ground";
 
 constexpr double slow = 5e-4; // see Ground
 
@@ -29,7 +29,7 @@ double cube_root(double v)
 class GroundContact : public Effect {
 public:
     explicit GroundContact(const Ground& ground)
-        : Effect(effect_name), ground_(ground),
+        : Effect(ground_name), ground_(ground),
           points_(ground.at_nodes ? ContactPoints::Of::nodes : ContactPoints::Of::surface)
     {
         ground_.normal.normalize();
@@ -171,7 +171,7 @@ private:
     ContactPoints points_;
 };
 
-EffectPlan read(JsonFields& f)
+EffectPlan read_ground(JsonFields& f)
 {
     Ground ground;
     ground.point = f.vector("point", Vec3::Zero());
@@ -188,7 +188,7 @@ EffectPlan read(JsonFields& f)
 } // namespace
 
 namespace effects {
-extern const EffectKind ground{effect_name, read, R"json([{
+extern const EffectKind ground{ground_name, read_ground, R"json([{
     "description": "a plane that pushes back",
     "properties": {
         "point": {"$ref": "#/$defs/vector"},

@@ -6,7 +6,7 @@
 namespace cinch {
 namespace {
 
-constexpr const char* effect_name = "hourglass";
+constexpr const char* hourglass_name = "hourglass";
 
 // A fit that keeps every direction in which the neighbours extend by more than rounding: unlike the gradient of the
 // stresses, the residual is well conditioned in all of them, and must be 0 at rest.
@@ -19,7 +19,7 @@ constexpr double rounding_only = 1e-12;
 class Hourglass : public Effect {
 public:
     Hourglass(const MeshlessBody& body, double alpha, double young)
-        : Effect(effect_name), offset_(4 * body.neighbour.size(), 0), spring_(body.size(), 0),
+        : Effect(hourglass_name), offset_(4 * body.neighbour.size(), 0), spring_(body.size(), 0),
           moments_(12 * body.size(), 0), weight_sum_(body.size(), 0)
     {
         for (std::size_t i = 0, d = 0; i < body.size(); ++i) {
@@ -109,7 +109,7 @@ private:
     std::vector<Flat> flats_;
 };
 
-EffectPlan read(JsonFields& f)
+EffectPlan read_hourglass(JsonFields& f)
 {
     const double alpha = f.number("alpha", JsonFields::not_negative(), 1),
                  given = f.number("young", JsonFields::positive(), 0);
@@ -124,7 +124,7 @@ EffectPlan read(JsonFields& f)
 } // namespace
 
 namespace effects {
-extern const EffectKind hourglass{effect_name, read, R"json([{
+extern const EffectKind hourglass{hourglass_name, read_hourglass, R"json([{
     "description": "keeps neighbours where the gradient says that they are",
     "properties": {
         "alpha": {"type": "number", "minimum": 0, "description": "[1]"},

@@ -5,7 +5,7 @@
 namespace cinch {
 namespace {
 
-EffectPlan read(JsonFields& f)
+EffectPlan read_pinned(JsonFields& f)
 {
     return {[selection = read_nodes(f, "nodes")](BodyBuilder& body) {
         std::vector<std::uint32_t> nodes = body.select(selection);
@@ -19,7 +19,7 @@ EffectPlan read(JsonFields& f)
 } // namespace
 
 namespace effects {
-extern const EffectKind pinned{"pinned", read, R"json([{
+extern const EffectKind pinned{"pinned", read_pinned, R"json([{
     "description": "nodes that stay",
     "properties": {"nodes": {"$ref": "#/$defs/nodes"}},
     "example": {"nodes": {"index": [0, 1]}}

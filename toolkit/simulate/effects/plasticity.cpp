@@ -13,11 +13,11 @@
 namespace cinch {
 namespace {
 
-constexpr const char* effect_name = "plasticity";
+constexpr const char* plasticity_name = "plasticity";
 
 class Plasticity : public Effect {
 public:
-    explicit Plasticity(const PlasticFlow& flow) : Effect(effect_name), flow_(flow) {}
+    explicit Plasticity(const PlasticFlow& flow) : Effect(plasticity_name), flow_(flow) {}
 
     bool needs_deformation() const override { return true; }
     bool is_plastic() const override { return true; }
@@ -48,7 +48,7 @@ private:
     PlasticFlow flow_;
 };
 
-EffectPlan read(JsonFields& f)
+EffectPlan read_plasticity(JsonFields& f)
 {
     PlasticFlow flow;
     flow.yield = f.number("yield", JsonFields::not_negative());
@@ -60,7 +60,7 @@ EffectPlan read(JsonFields& f)
 } // namespace
 
 namespace effects {
-extern const EffectKind plasticity{effect_name, read, R"json([{
+extern const EffectKind plasticity{plasticity_name, read_plasticity, R"json([{
     "description": "stays deformed",
     "properties": {
         "yield": {"type": "number", "minimum": 0, "description": "strain from which it flows"},

@@ -11,7 +11,7 @@
 namespace cinch {
 namespace {
 
-constexpr const char* effect_name = "pulling";
+constexpr const char* pulling_name = "pulling";
 
 // Shares of the nodes by mass; they sum to 1.
 std::vector<double> by_mass(const MeshlessBody& body, const std::vector<std::uint32_t>& nodes)
@@ -28,7 +28,7 @@ std::vector<double> by_mass(const MeshlessBody& body, const std::vector<std::uin
 class Force : public Effect {
 public:
     Force(const MeshlessBody& body, PullingForce pull)
-        : Effect(effect_name), pull_(std::move(pull)), share_(by_mass(body, pull_.nodes))
+        : Effect(pulling_name), pull_(std::move(pull)), share_(by_mass(body, pull_.nodes))
     {
     }
 
@@ -65,7 +65,7 @@ private:
 class Target : public Effect {
 public:
     Target(const MeshlessBody& body, PullingTarget pull)
-        : Effect(effect_name), pull_(std::move(pull)), share_(by_mass(body, pull_.nodes))
+        : Effect(pulling_name), pull_(std::move(pull)), share_(by_mass(body, pull_.nodes))
     {
     }
 
@@ -136,7 +136,7 @@ EffectPlan read_target(JsonFields& f, NodeSelection nodes)
     return plan;
 }
 
-EffectPlan read(JsonFields& f)
+EffectPlan read_pulling(JsonFields& f)
 {
     NodeSelection nodes = read_nodes(f, "nodes");
     return f.has("stiffness") ? read_target(f, std::move(nodes)) : read_force(f, std::move(nodes));
@@ -145,7 +145,7 @@ EffectPlan read(JsonFields& f)
 } // namespace
 
 namespace effects {
-extern const EffectKind pulling{effect_name, read, R"json([{
+extern const EffectKind pulling{pulling_name, read_pulling, R"json([{
     "description": "a force on nodes together, spread by mass",
     "properties": {
         "nodes": {"$ref": "#/$defs/nodes"},

@@ -35,7 +35,7 @@ template <class Make> auto pin_with(NodeSelection selection, Make make)
     };
 }
 
-EffectPlan read(JsonFields& f)
+EffectPlan read_scripted(JsonFields& f)
 {
     EffectPlan plan;
     const NodeSelection selection = read_nodes(f, "nodes");
@@ -73,7 +73,7 @@ EffectPlan read(JsonFields& f)
 } // namespace
 
 namespace effects {
-extern const EffectKind scripted{"scripted", read, R"json([{
+extern const EffectKind scripted{"scripted", read_scripted, R"json([{
     "description": "nodes that turn about an axis of the world at a rate",
     "properties": {
         "nodes": {"$ref": "#/$defs/nodes"},

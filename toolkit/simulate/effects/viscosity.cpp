@@ -8,7 +8,7 @@
 namespace cinch {
 namespace {
 
-constexpr const char* effect_name = "viscosity";
+constexpr const char* viscosity_name = "viscosity";
 
 // S = η (ε − ε_before) / Δt. An explicit integrator remembers after its forces, so that its rate is that of the last
 // step; an implicit one before it solves, so that its rate is that of the step to come.
@@ -52,7 +52,7 @@ struct KelvinVoigt {
     }
 };
 
-EffectPlan read(JsonFields& f)
+EffectPlan read_viscosity(JsonFields& f)
 {
     const double viscosity = f.number("viscosity", JsonFields::not_negative());
     return {[viscosity](BodyBuilder& body) { body.add(make_viscosity(viscosity)); }};
@@ -61,7 +61,7 @@ EffectPlan read(JsonFields& f)
 } // namespace
 
 namespace effects {
-extern const EffectKind viscosity{effect_name, read, R"json([{
+extern const EffectKind viscosity{viscosity_name, read_viscosity, R"json([{
     "description": "stress against the rate of strain (Kelvin-Voigt)",
     "properties": {"viscosity": {"type": "number", "minimum": 0, "description": "Pa s"}},
     "required": ["viscosity"],
@@ -71,7 +71,7 @@ extern const EffectKind viscosity{effect_name, read, R"json([{
 
 std::unique_ptr<Effect> make_viscosity(double viscosity)
 {
-    return std::make_unique<StressEffect<KelvinVoigt>>(effect_name, KelvinVoigt{viscosity});
+    return std::make_unique<StressEffect<KelvinVoigt>>(viscosity_name, KelvinVoigt{viscosity});
 }
 
 } // namespace cinch

@@ -8,7 +8,7 @@
 namespace cinch {
 namespace {
 
-constexpr const char* effect_name = "volume";
+constexpr const char* volume_name = "volume";
 
 struct VolumePreservation {
     static constexpr bool feels_plasticity = false; // plastic flow keeps the volume
@@ -31,7 +31,7 @@ struct VolumePreservation {
     }
 };
 
-EffectPlan read(JsonFields& f)
+EffectPlan read_volume(JsonFields& f)
 {
     const double stiffness = f.number("stiffness", JsonFields::not_negative());
     return {[stiffness](BodyBuilder& body) { body.add(make_volume(stiffness)); }};
@@ -40,7 +40,7 @@ EffectPlan read(JsonFields& f)
 } // namespace
 
 namespace effects {
-extern const EffectKind volume{effect_name, read, R"json([{
+extern const EffectKind volume{volume_name, read_volume, R"json([{
     "description": "resists change of volume",
     "properties": {"stiffness": {"type": "number", "minimum": 0}},
     "required": ["stiffness"],
@@ -50,7 +50,7 @@ extern const EffectKind volume{effect_name, read, R"json([{
 
 std::unique_ptr<Effect> make_volume(double stiffness)
 {
-    return std::make_unique<StressEffect<VolumePreservation>>(effect_name, VolumePreservation{stiffness});
+    return std::make_unique<StressEffect<VolumePreservation>>(volume_name, VolumePreservation{stiffness});
 }
 
 } // namespace cinch
