@@ -100,7 +100,7 @@ TEST_CASE("kernels agree with the readable form")
 // The kernels round what they read outward, and add their errors: never below the formula by more than its own
 // rounding, and above it by some units of the last place of a vertex's distance. One that gave away 1 % of the width
 // would be far off.
-TEST_CASE("kernels agree with the formulas of the kinds that best chooses among, and best is the least of them")
+TEST_CASE("kernels agree with the formulas of the kinds beyond the ladder, and best is the least of its own")
 {
     const Scene scene;
     const std::vector<Vec3>& x = scene.e.surface.mesh.vertices;
@@ -109,15 +109,9 @@ TEST_CASE("kernels agree with the formulas of the kinds that best chooses among,
         std::vector<double> simple(k), also(k);
         const auto formula = [&](Method kind, std::size_t bv, const std::vector<AffineMap>& frame, double start,
                                  std::vector<double>& out) {
-            const RestBv rest = scene.bvh.rest(bv);
-            if (kind == Method::local)
-                readable_local(rest, frame, start, axes_of(kdop), out);
-            else if (kind == Method::support)
-                readable_support(rest, x, frame, start, axes_of(kdop), out);
-            else
-                readable_linear(rest, x, frame, axes_of(kdop), out);
+            readable_bound(kind, scene.bvh.rest(bv), x, frame, start, axes_of(kdop), out);
         };
-        for (const Method method : chosen_methods | Method::best) {
+        for (const Method method : kernel_methods.without(ladder_methods)) {
             const auto kinds_of = choose_kinds(scene.bvh, scene.e.surface, method);
             const auto fast = scene.bounds<double>(method, kdop, Rounding::proven, 1),
                        single = scene.bounds<float>(method, kdop, Rounding::proven, 1);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <vector>
 
 namespace cinch {
@@ -71,8 +72,8 @@ double rest_support(const RestBv& bv, std::span<const Vec3> x, const Vec3& q)
     return std::min(most + bv.slack * q.norm(), q.dot(bv.box.centre - bv.pivot) + q.cwiseAbs().dot(bv.box.half));
 }
 
-} // namespace
-
+// D(λ) of the extrema b_j of γ·(A_j x + t_j) over each simulation node's own rest box, cut by its ball; never more
+// than the greatest b.
 void readable_local(const RestBv& bv, std::span<const AffineMap> maps, double start, std::span<const Axis> axes,
                     std::span<double> supports)
 {
@@ -88,6 +89,8 @@ void readable_local(const RestBv& bv, std::span<const AffineMap> maps, double st
     }
 }
 
+// The support of the mean map over the rest vertices, and D(λ) of the extrema of what each map differs from it over
+// the node's box.
 void readable_support(const RestBv& bv, std::span<const Vec3> x, std::span<const AffineMap> maps, double start,
                       std::span<const Axis> axes, std::span<double> supports)
 {
@@ -106,6 +109,11 @@ void readable_support(const RestBv& bv, std::span<const Vec3> x, std::span<const
     }
 }
 
+// The affine model of the weights: w_j = m_j + g_j·y + ρ_j, y = x − z, |ρ_j| ≤ residual_j, |(w_j − m_j) y| ≤ moment_j.
+//   γ·v = q̄·x + θ̄ + Σ_j (w_j − m_j)(dq_j·x + dθ_j)
+//       = q̄·z + θ̄ + (q̄ + Σ_j P_j g_j)·y + Σ_j ρ_j P_j + Σ_j (w_j − m_j) dq_j·y,   P_j = dq_j·z + dθ_j,  dq_j = q_j −
+//       q̄,
+// so the support of q̄ + Σ P_j g_j over y, Σ residual_j |P_j|, and Σ |dq_j|·moment_j.
 void readable_linear(const RestBv& bv, std::span<const Vec3> x, std::span<const AffineMap> maps,
                      std::span<const Axis> axes, std::span<double> supports)
 {
@@ -123,6 +131,23 @@ void readable_linear(const RestBv& bv, std::span<const Vec3> x, std::span<const 
         for (const int side : {1, -1})
             supports[2 * a + (side < 0)] =
                 side * (mean.q.dot(bv.pivot) + mean.theta) + rest_support(bv, x, side * direction) + rest;
+    }
+}
+
+} // namespace
+
+void readable_bound(Method kind, const RestBv& bv, std::span<const Vec3> x, std::span<const AffineMap> maps,
+                    double start, std::span<const Axis> axes, std::span<double> supports)
+{
+    switch (kind) {
+    case Method::local:
+        return readable_local(bv, maps, start, axes, supports);
+    case Method::support:
+        return readable_support(bv, x, maps, start, axes, supports);
+    case Method::linear:
+        return readable_linear(bv, x, maps, axes, supports);
+    default:
+        throw std::invalid_argument("no formula of " + std::string(name_of(kind)));
     }
 }
 
