@@ -4,10 +4,12 @@
 #include <CLI/CLI.hpp>
 
 #include "experiments/collide/collide.hpp"
+#include "experiments/merge.hpp"
 #include "experiments/report/reproduce.hpp"
 #include "experiments/scaling.hpp"
 #include "experiments/simulation/cost_simulation.hpp"
 #include "experiments/simulation/simulate.hpp"
+#include "experiments/study/study.hpp"
 #include "experiments/view.hpp"
 #ifdef CINCH_EXACT
 #include "experiments/corners.hpp"
@@ -27,6 +29,8 @@ void add_collide(CLI::App& app, CollideOptions& o);
 void add_view(CLI::App& app, ViewOptions& o);
 void add_reproduce(CLI::App& app, ReproduceOptions& o);
 void add_report(CLI::App& app, ReportOptions& o);
+void add_study(CLI::App& app, StudyOptions& o);
+void add_merge(CLI::App& app, MergeOptions& o);
 #ifdef CINCH_EXACT
 void add_verify(CLI::App& app, VerifyOptions& o);
 void add_tightness(CLI::App& app, TightnessOptions& o);

@@ -39,6 +39,7 @@ void add_verify(CLI::App& app, VerifyOptions& o)
         ->check(CLI::Range(1, 1000000))
         ->option_text("N");
     option("--threads", o.threads, "threads [all cores]")->check(CLI::Range(1, 1024))->option_text("N");
+    add_shards(command, o.shards);
     add_output(command, o.output);
     option("--certificate", o.certificate,
            "write a proof of every bound, for experiments/check_certificate.py; compressed if it ends in .gz")
@@ -65,6 +66,7 @@ void add_verify(CLI::App& app, VerifyOptions& o)
   cinch verify robot.glb --clip Robot_Dance  a skinned character
   cinch verify rest.off --weights w.txt --transforms t.txt --json
   cinch verify fish --certificate fish.jsonl.gz
+  cinch verify robot.glb --out proof --shard 0/8   an eighth of its frames
   cinch verify santa-ring-3 --update lazy    the bounds that collision reads
 
 Text form of weights and transforms ('#' starts a comment):

@@ -65,6 +65,21 @@ void add_methods(CLI::App& command, Methods& methods)
         ->option_text("NAME");
 }
 
+void add_shards(CLI::App& command, ShardOptions& o)
+{
+    CLI::Option* const folder =
+        command
+            .add_option("--out", o.folder,
+                        wrapped("keep what is finished in this folder; the same command goes on from there"))
+            ->option_text("DIR");
+    command
+        .add_option("--shard", o.shard,
+                    wrapped("compute one part of N, I from 0 to N - 1, for 'cinch merge DIR'; slurm: that of the array "
+                            "job's task"))
+        ->option_text("I/N")
+        ->needs(folder);
+}
+
 void add_input(CLI::App& command, InputOptions& o)
 {
     command

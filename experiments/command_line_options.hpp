@@ -10,6 +10,7 @@
 
 #include "cinch/bounds.hpp"
 #include "experiments/input.hpp"
+#include "experiments/records/run_campaign.hpp"
 #include "experiments/report/record_output.hpp"
 
 namespace cinch {
@@ -50,6 +51,8 @@ enum class Draws { charts, nothing };
 
 /// --json, --csv, --plot and --report.
 void add_output(CLI::App& command, OutputOptions& o, Draws draws = Draws::charts);
+/// --out and --shard.
+void add_shards(CLI::App& command, ShardOptions& o);
 /// --precision and --passes.
 void add_arithmetic(CLI::App& command, Precision& precision, int& passes);
 /// --method, one or several.

@@ -102,6 +102,10 @@ int main(int argc, char** argv)
     add_reproduce(app, reproduce_options);
     ReportOptions report_options;
     add_report(app, report_options);
+    StudyOptions study_options;
+    add_study(app, study_options);
+    MergeOptions merge_options;
+    add_merge(app, merge_options);
     const auto run = [&](const CLI::App& parsed) -> int {
 #ifdef CINCH_EXACT
         if (parsed.got_subcommand("verify"))
@@ -139,6 +143,10 @@ int main(int argc, char** argv)
             return reproduce(reproduce_options);
         if (parsed.got_subcommand("report"))
             return report(report_options);
+        if (parsed.got_subcommand("study"))
+            return study(study_options);
+        if (parsed.got_subcommand("merge"))
+            return merge_shards(merge_options);
         return parsed.get_subcommands().empty() ? bad_input : 0;
     };
     if (const char* target = std::getenv("CINCH_TARGET"); target && *target && !force_kernel_target(target)) {

@@ -15,6 +15,7 @@
 #include "cinch/refit.hpp"
 #include "cinch/surface.hpp"
 #include "exact/certificate.hpp"
+#include "experiments/records/run_campaign.hpp"
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/line_file.hpp"
 #include "experiments/report/or_leave.hpp"
@@ -22,6 +23,7 @@
 #include "experiments/report/whole_file.hpp"
 #include "experiments/verify_lazy.hpp"
 #include "experiments/verify_report.hpp"
+#include "experiments/verify_rows.hpp"
 #include "toolkit/bounds/rounding.hpp"
 #include "toolkit/deform/dyadic.hpp"
 
@@ -151,23 +153,48 @@ struct PreparedInput {
     Ladder ladder;
 };
 
-// Refits and proves every BV of one body in every frame, on top of what `totals` has. An interrupt ends it between two
-// frames: `totals` has whole ones.
+// Refits and proves every BV of one body in one frame; `supports` are its bounds.
+VerifyTotals verify_frame(PreparedInput& prepared, const Input& input, const VerifyOptions& options, std::size_t f,
+                          exact::CertificateWriter* proof, std::vector<double>& supports)
+{
+    const Bvh& bvh = prepared.bvh;
+    VerifyTotals totals;
+    supports.resize(bvh.bvs.size() * static_cast<std::size_t>(options.kdop));
+    const Clip::Frame maps = input.clip.frame(f);
+    totals.unbounded_nodes = prepared.refit(maps, supports).unbounded_nodes;
+    const exact::FrameVerdict verdict =
+        prepared.verifier.check(maps, options.methods, options.kdop, supports, options.rest_shape);
+    if (options.volume) {
+        totals.volumes.resize(bvh.level.size() - 1);
+        add_volumes(input.surface, bvh, maps, options.kdop, supports, totals.volumes);
+    }
+    prepared.ladder.check(maps, supports, totals.ladder);
+    if (proof)
+        proof->frame(input.clip.time_s(f), maps, supports, verdict);
+    add_levels(bvh, totals);
+    add(bvh, verdict, options.kdop, {}, totals);
+    totals.infinite = static_cast<std::size_t>(
+        std::count_if(supports.begin(), supports.end(), [](double s) { return std::isinf(s); }));
+    totals.packed_bytes = prepared.refit.bytes();
+    totals.rest_bytes = bvh.bytes();
+    return totals;
+}
+
+std::unique_ptr<PreparedInput> prepare(const std::shared_ptr<const Inputs>& inputs, const Input& input,
+                                       const VerifyOptions& options)
+{
+    return or_leave([inputs, &input, options] { return std::make_unique<PreparedInput>(inputs, input, options); });
+}
+
+// One body in every frame, on top of what `totals` has. An interrupt ends it between two frames: `totals` has whole
+// ones.
 void verify_body(const std::shared_ptr<const Inputs>& inputs, const Input& input, const VerifyOptions& options,
                  LineFile* certificate, VerifyTotals& totals)
 {
-    const std::unique_ptr<PreparedInput> prepared =
-        or_leave([inputs, &input, options] { return std::make_unique<PreparedInput>(inputs, input, options); });
-    const Bvh& bvh = prepared->bvh;
-    const exact::Verifier& verifier = prepared->verifier;
-    Refitter& refit = prepared->refit;
-    Ladder& ladder = prepared->ladder;
-    totals.packed_bytes += refit.bytes();
-    totals.rest_bytes += bvh.bytes();
-
+    const std::unique_ptr<PreparedInput> prepared = prepare(inputs, input, options);
     std::optional<exact::CertificateWriter> proof;
     if (certificate)
-        proof.emplace(input.surface, bvh,
+        proof.emplace(input.surface, prepared->bvh,
                       exact::Claim{.methods = options.methods,
                                    .kdop = options.kdop,
                                    .shape = options.rest_shape,
@@ -178,39 +205,48 @@ void verify_body(const std::shared_ptr<const Inputs>& inputs, const Input& input
                           throw_if_interrupted(); // then none is written
                           certificate->line(text);
                       });
-
     const std::size_t before = totals.frames;
     Progress progress("verifying frames", totals.frames_wanted);
-    std::vector<double> supports(bvh.bvs.size() * static_cast<std::size_t>(options.kdop));
+    std::vector<double> supports;
     for (std::size_t f = 0; f < input.clip.frame_count(); ++f) {
         throw_if_interrupted();
-        const Clip::Frame maps = input.clip.frame(f);
-        const std::size_t unbounded = refit(maps, supports).unbounded_nodes;
-        const exact::FrameVerdict verdict =
-            verifier.check(maps, options.methods, options.kdop, supports, options.rest_shape);
-        std::vector<VolumeTotals> volumes = totals.volumes; // kept with their frame
-        if (options.volume) {
-            volumes.resize(std::max(volumes.size(), bvh.level.size() - 1));
-            add_volumes(input.surface, bvh, maps, options.kdop, supports, volumes);
-        }
-        LadderTotals compared = totals.ladder;
-        ladder.check(maps, supports, compared);
-        if (proof)
-            proof->frame(input.clip.time_s(f), maps, supports, verdict);
-        if (totals.frames == before)
-            add_levels(bvh, totals);
-        add(bvh, verdict, options.kdop, {}, totals);
-        totals.unbounded_nodes += unbounded;
-        totals.volumes = std::move(volumes);
-        totals.ladder = compared;
-        totals.infinite += static_cast<std::size_t>(
-            std::count_if(supports.begin(), supports.end(), [](double s) { return std::isinf(s); }));
+        const VerifyTotals frame = verify_frame(*prepared, input, options, f, proof ? &*proof : nullptr, supports);
+        add_row(frame_row(0, f, frame), totals);
         progress.done(totals.frames);
     }
     if (proof && totals.frames - before == input.clip.frame_count())
         proof->end();
     if (totals.frames > before)
-        explain_last_frame(input, bvh, options, totals.frames - before - 1, supports, totals);
+        explain_last_frame(input, prepared->bvh, options, totals.frames - before - 1, supports, totals);
+}
+
+// Frame by frame into a folder, or those of one shard.
+int verify_in_cells(const std::shared_ptr<const Inputs>& inputs, const VerifyOptions& options)
+{
+    std::vector<std::pair<std::size_t, std::size_t>> cells; // body and frame
+    for (std::size_t body = 0; body < inputs->bodies.size(); ++body)
+        for (std::size_t f = 0; f < inputs->bodies[body].clip.frame_count(); ++f)
+            cells.emplace_back(body, f);
+    VerifyOptions own = options;
+    own.output.json = true; // whatever is printed later: the exact attribution of the root goes with the last frame
+    std::unique_ptr<PreparedInput> prepared;
+    std::optional<std::size_t> prepared_body;
+    std::vector<double> supports;
+    const auto run = run_campaign(
+        campaign_of("verify", verify_plan(*inputs, options), cells.size()), options.shards, [&](std::size_t cell) {
+            const auto [body, f] = cells[cell];
+            const Input& input = inputs->bodies[body];
+            const auto start = std::chrono::steady_clock::now();
+            if (prepared_body != body)
+                prepared = prepare(inputs, input, options);
+            prepared_body = body;
+            VerifyTotals frame = verify_frame(*prepared, input, options, f, nullptr, supports);
+            if (f + 1 == input.clip.frame_count())
+                explain_last_frame(input, prepared->bvh, own, f, supports, frame);
+            frame.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+            return Rows{frame_row(body, f, frame)};
+        });
+    return run ? print_verify(*run, options.output) : 0;
 }
 
 } // namespace
@@ -236,6 +272,14 @@ int verify(const VerifyOptions& given)
     output.describe(fields_of(inputs));
     if (inputs.bodies.size() > 1 && (!options.certificate.empty() || !options.vipr.empty()))
         throw InputError("--certificate and --vipr are of one body; --body chooses it");
+    if (!options.shards.folder.empty()) {
+        if (options.update != VerifiedUpdate::refit || options.remember || !options.certificate.empty() ||
+            !options.vipr.empty())
+            throw InputError("--out goes neither with --update and --remember, where frames depend on those before "
+                             "them, nor with --certificate and --vipr");
+        catch_interrupt();
+        return verify_in_cells(shared, options);
+    }
     VerifyTotals totals;
     for (const Input& input : inputs.bodies)
         totals.frames_wanted += input.clip.frame_count();
@@ -262,12 +306,13 @@ int verify(const VerifyOptions& given)
     totals.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
     output.set(completeness);
-    output.add_all(lazy ? lazy_records_of(inputs, options, totals, *lazy) : records_of(inputs, options, totals));
+    output.add_all(lazy ? lazy_records_of(verified(inputs), options, totals, *lazy)
+                        : records_of(verified(inputs), options, totals));
     output.finish();
     if (!options.output.records_only() && lazy)
-        print_lazy_table(inputs, options, totals, *lazy, from);
+        print_lazy_table(verified(inputs), options, totals, *lazy, from);
     else if (!options.output.records_only())
-        print_table(inputs, options, totals, from);
+        print_table(verified(inputs), options, totals, from);
     if (certificate && completeness.complete)
         certificate->commit();
     if (totals.violated || !totals.ladder.holds())

@@ -3,6 +3,7 @@
 
 #include "cinch/refit.hpp"
 #include "experiments/input.hpp"
+#include "experiments/records/run_campaign.hpp"
 #include "experiments/report/record_output.hpp"
 
 namespace cinch {
@@ -33,6 +34,7 @@ struct VerifyOptions {
     std::size_t leaf = 0; ///< most triangles; 0: 1 for refit, else 16
     int threads = 0;      ///< 0: as many as the machine has
     OutputOptions output;
+    ShardOptions shards;
     std::string certificate; ///< file to write; empty: none
     std::string vipr;        ///< folder for single bounds as VIPR files; empty: none
     bool volume = false;     ///< exact volume ratios too

@@ -20,17 +20,17 @@ const char* name_of(VerifiedUpdate update)
 
 } // namespace
 
-void print_lazy_table(const Inputs& input, const VerifyOptions& options, const VerifyTotals& totals,
+void print_lazy_table(const VerifiedInput& input, const VerifyOptions& options, const VerifyTotals& totals,
                       const LazyTotals& lazy, const Provenance& from)
 {
     print_note(completeness_of(totals));
     for (const std::string& line : input.report)
         fmt::print("{}\n", line);
-    const std::size_t k = static_cast<std::size_t>(options.kdop), steps = totals.frames / input.bodies.size();
+    const std::size_t k = static_cast<std::size_t>(options.kdop), steps = totals.frames / input.bodies;
     fmt::print("update {}, method {} in {}, {}-DOP, at most {} per leaf; {} of {}\n\n", name_of(options.update),
                cinch::name_of(options.methods), cinch::name_of(options.precision), options.kdop,
                counted(options.leaf, "triangle", "triangles"), steps,
-               counted(totals.frames_wanted / input.bodies.size(), "frame", "frames"));
+               counted(totals.frames_wanted / input.bodies, "frame", "frames"));
     std::vector<std::vector<std::string>> rows;
     for (std::size_t i = 0; i < totals.levels.size(); ++i) {
         const LevelTotals& level = totals.levels[i];
@@ -53,11 +53,11 @@ void print_lazy_table(const Inputs& input, const VerifyOptions& options, const V
         fmt::print("{} infinite: something overflows the arithmetic\n",
                    counted(totals.infinite, "bound is", "bounds are"));
     fmt::print("{} bounds, {} proven, {} violated{}\n", grouped(totals.bounds), grouped(totals.proven),
-               grouped(totals.violated), partial_mark(input.missing()));
+               grouped(totals.violated), partial_mark(input.missing));
     fmt::print("{}\n{}\n", duration(totals.seconds), describe(from));
 }
 
-std::vector<nlohmann::ordered_json> lazy_records_of(const Inputs& input, const VerifyOptions& options,
+std::vector<nlohmann::ordered_json> lazy_records_of(const VerifiedInput& input, const VerifyOptions& options,
                                                     const VerifyTotals& totals, const LazyTotals& lazy)
 {
     using json = nlohmann::ordered_json;
@@ -94,7 +94,7 @@ std::vector<nlohmann::ordered_json> lazy_records_of(const Inputs& input, const V
     }
     json record = base();
     record.update({{"leaf_triangles", options.leaf},
-                   {"bodies", input.bodies.size()},
+                   {"bodies", input.bodies},
                    {"pairs", lazy.pairs},
                    {"by_methods", lazy.by_methods},
                    {"merged", lazy.merged},

@@ -51,7 +51,8 @@ void print_examples(const VerifyTotals& totals, int kdop)
         fmt::print("\n");
 }
 
-void print_table(const Inputs& input, const VerifyOptions& options, const VerifyTotals& totals, const Provenance& from)
+void print_table(const VerifiedInput& input, const VerifyOptions& options, const VerifyTotals& totals,
+                 const Provenance& from)
 {
     print_note(completeness_of(totals));
     for (const std::string& line : input.report)
@@ -119,12 +120,12 @@ void print_table(const Inputs& input, const VerifyOptions& options, const Verify
         fmt::print("{} infinite: something overflows the arithmetic\n",
                    counted(totals.infinite, "bound is", "bounds are"));
     fmt::print("{} bounds, {} proven, {} violated{}\n", grouped(totals.bounds), grouped(totals.proven),
-               grouped(totals.violated), partial_mark(input.missing()));
+               grouped(totals.violated), partial_mark(input.missing));
     fmt::print("{}, filter hit rate {:.4f}\n{}\n", duration(totals.seconds),
                rate(totals.decided_by_filter, totals.bounds), describe(from));
 }
 
-std::vector<nlohmann::ordered_json> records_of(const Inputs& input, const VerifyOptions& options,
+std::vector<nlohmann::ordered_json> records_of(const VerifiedInput& input, const VerifyOptions& options,
                                                const VerifyTotals& totals)
 {
     using json = nlohmann::ordered_json;
@@ -189,18 +190,12 @@ std::vector<nlohmann::ordered_json> records_of(const Inputs& input, const Verify
         records.push_back(std::move(record));
     }
     json record = base();
-    std::size_t vertices = 0, triangles = 0, nodes = 0;
-    for (const Input& body : input.bodies) {
-        vertices += body.surface.mesh.vertices.size();
-        triangles += body.surface.mesh.triangles.size();
-        nodes += body.surface.weights.node_count;
-    }
     record.update({{"leaf_triangles", options.leaf},
-                   {"vertices", vertices},
-                   {"triangles", triangles},
-                   {"nodes", nodes},
-                   {"bodies", input.bodies.size()},
-                   {"motion", input.bodies[0].clip.name},
+                   {"vertices", input.vertices},
+                   {"triangles", input.triangles},
+                   {"nodes", input.nodes},
+                   {"bodies", input.bodies},
+                   {"motion", input.motion},
                    {"bounds", totals.bounds},
                    {"proven", totals.proven},
                    {"violated", totals.violated},

@@ -68,6 +68,8 @@ Provenance provenance(int threads, std::uint64_t seed)
 
 std::string describe(const Provenance& p)
 {
+    if (p.cpu == "any")
+        return fmt::format("cinch {} ({}), {}, seed {}", p.version, p.commit, p.compiler, p.seed);
     return fmt::format("cinch {} ({}), {}, seed {}\n{}, {} {}, {}", p.version, p.commit, p.compiler, p.seed, p.cpu,
                        p.threads, p.threads == 1 ? "thread" : "threads", p.simd);
 }

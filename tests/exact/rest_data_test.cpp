@@ -92,7 +92,7 @@ DeformableSurface skinned(TriangleMesh mesh, Random& random)
             influences.node.push_back(0);
             influences.weight.push_back(1);
         }
-        influences.row.push_back(influences.node.size());
+        influences.row.push_back(static_cast<std::uint32_t>(influences.node.size()));
     }
     return {std::move(mesh), to_dyadic(influences)};
 }

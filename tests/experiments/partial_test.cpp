@@ -48,9 +48,9 @@ long peak_kb(const std::vector<std::string>& arguments)
 TEST_CASE("what is not modelled is refused by every command, and what is bounded of it says so everywhere")
 {
     const std::string file = report("F03_morph_animated_noted.gltf");
-    for (const std::string command : {"verify " + file + " --frames 2", "tightness " + file + " --frames 2",
-                                      "cost " + file + " --frames 2 --this-input-only --kdops 6 --seconds 0.01",
-                                      "scaling " + file + " --seconds 0.001", "view " + file + " --frames 2"}) {
+    for (const std::string& command : {"verify " + file + " --frames 2", "tightness " + file + " --frames 2",
+                                       "cost " + file + " --frames 2 --this-input-only --kdops 6 --seconds 0.01",
+                                       "scaling " + file + " --seconds 0.001", "view " + file + " --frames 2"}) {
         INFO(command);
         const bool view = command.starts_with("view");
         const test::Run refused = test::cinch(command + (view ? " --json" : ""));

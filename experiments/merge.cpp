@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/merge.hpp"
+
+#include <fmt/format.h>
+
+#include "cinch/surface.hpp"
+#include "experiments/records/row_folder.hpp"
+#include "experiments/study/study.hpp"
+#ifdef CINCH_EXACT
+#include "experiments/verify_rows.hpp"
+#endif
+
+namespace cinch {
+
+int merge_shards(const MergeOptions& options)
+{
+    const Merged all = merge(options.folder);
+    if (all.campaign.command == "study") {
+        print_study(all, options.output);
+        return 0;
+    }
+#ifdef CINCH_EXACT
+    if (all.campaign.command == "verify")
+        return print_verify(all, options.output);
+#endif
+    throw InputError::in_file(
+        options.folder, fmt::format("has rows of 'cinch {}', which this program cannot print", all.campaign.command));
+}
+
+} // namespace cinch

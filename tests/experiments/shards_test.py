@@ -1,0 +1,97 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""shards_test.py CINCH: runs in shards, runs that are killed again and again, and whole runs print the same bytes."""
+import json
+import pathlib
+import random
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+cinch = sys.argv[1]
+
+
+def run(*words, status=0, **more):
+    out = subprocess.run([cinch, *map(str, words)], capture_output=True, **more)
+    assert out.returncode == status, (words, out.returncode, out.stderr.decode())
+    return out
+
+
+def killed_and_resumed(words, folder, kills, seed):
+    """Killed at random moments, then run to its end."""
+    chance = random.Random(seed)
+    begun = time.monotonic()
+    run(*words, "--out", folder / "timed")
+    length = time.monotonic() - begun
+    killed = 0
+    while killed < kills:
+        process = subprocess.Popen([cinch, *map(str, words), "--out", str(folder / "killed")],
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        try:
+            process.wait(chance.uniform(0.1, 0.3) * length)
+        except subprocess.TimeoutExpired:
+            process.send_signal(chance.choice([signal.SIGKILL, signal.SIGINT, signal.SIGTERM]))
+            process.wait()
+            killed += 1
+            continue
+        break  # it was done before
+    assert killed >= 2, "too fast to be killed"
+    return run(*words, "--out", folder / "killed").stdout
+
+
+def compare(name, words, outputs, kills=5, shards=7):
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = pathlib.Path(scratch)
+        whole = {}
+        for output in outputs:  # into a folder each: then nothing is said of this machine
+            whole[output] = without_times(run(*words, *output, "--out", folder / f"whole{len(whole)}").stdout)
+        for i in random.Random(1).sample(range(shards), shards):
+            run(*words, "--out", folder / "rows", "--shard", f"{i}/{shards}")
+        for output, expected in whole.items():
+            merged = without_times(run("merge", folder / "rows", *output).stdout)
+            assert merged == expected, (name, output, "in shards")
+        # A shard that is gone or torn is named, and what merge says to run makes it whole.
+        victim = sorted((folder / "rows").glob("shard-*.jsonl"))[3]
+        victim.write_bytes(victim.read_bytes()[:-9])
+        said = run("merge", folder / "rows", status=2).stderr.decode()
+        assert f"--array=3 --export=ALL,CINCH_SHARDS={shards}" in said, said
+        run(*words, "--out", folder / "rows", "--shard", "slurm",
+            env={"SLURM_ARRAY_TASK_ID": "3", "CINCH_SHARDS": str(shards)})
+        again = without_times(run("merge", folder / "rows", *outputs[0]).stdout)
+        assert again == whole[outputs[0]], (name, "after a torn line")
+        resumed = without_times(killed_and_resumed([*words, *outputs[0]], folder, kills, name))
+        assert resumed == whole[outputs[0]], (name, "killed")
+        print(f"{name}: whole, {shards} shards and {kills} kills give the same {len(whole[outputs[0]])} bytes")
+
+
+def without_times(text):
+    """Times are marked as such: "seconds" in records, and what a table says it took."""
+    text = re.sub(rb'"seconds":[^,}]*', b'"seconds":0', text)
+    return re.sub(rb"(?m)^[^\n]*, filter hit rate", b"filter hit rate", text)
+
+
+full = "--full" in sys.argv  # 3 inputs, 6 numbers of nodes, 5 seeds, 3 methods
+plan = {"inputs": ["brain-3500", "santa", "fish"], "nodes": "8..256" if full else "8..32", "frames": 1, "leaf": 16,
+        "seeds": "0-4" if full else "0-1", "methods": ["eq12", "limited", "best"], "detail": "levels"}
+cells = 3 * 6 * 5 if full else 3 * 3 * 2
+with tempfile.TemporaryDirectory() as place:
+    file = pathlib.Path(place) / "plan.json"
+    file.write_text(json.dumps(plan))
+    compare("study", ["study", file], [("--json",), ("--csv",), ()], kills=5 if full else 3)
+    rows = [json.loads(line) for line in run("study", file, "--json").stdout.splitlines()]
+    runs = [row for row in rows if "level" not in row]
+    assert len(runs) == 3 * cells and all(row["root_ratio"] >= 1 and row["complete"] for row in runs)
+    assert run("study", "-", "--json", input=json.dumps(plan).encode()).stdout.splitlines() == [
+        json.dumps(row, separators=(",", ":"), ensure_ascii=False).encode() for row in rows]
+    run("study", file, "--shard", "0/7", status=2)  # without a folder
+    run("study", file, "--out", file / "rows", status=2)
+verified = ["verify", "brain-3500", "--nodes", 60, "--frames", 9, "--leaf", 8, "--kdop", 14]
+compare("verify", verified, [("--json",), ()], kills=3)
+with tempfile.TemporaryDirectory() as place:  # a refuted bound in one shard is refuted in the whole
+    sabotaged = [*verified, "--sabotage", "lower-h", "--out", pathlib.Path(place) / "rows"]
+    run(*sabotaged, "--shard", "0/2")
+    run(*sabotaged, "--shard", "1/2")
+    assert b" 0 violated" not in run("merge", pathlib.Path(place) / "rows", status=1).stdout
