@@ -33,11 +33,11 @@ and of these, one value each:
 Whole numbers may be ranges: "1-20" is all of them, "16..512" is doubled.
 
 Examples:
-  echo '{"inputs": ["brain-3500", "santa"], "nodes": "16..256", "seeds": "1-5",
-         "methods": ["eq12", "best"]}' | cinch study -
   cinch study plan.json --out rows           kept; run again, it goes on
   cinch study plan.json --out rows --shard 0/7   a seventh of it
   cinch merge rows --csv                     all of it, whoever computed it
+  echo '{"inputs": ["brain-3500", "santa"], "nodes": "16..256", "seeds": "1-5",
+         "methods": ["eq12", "best"]}' | cinch study -
 
 Exit status: 0 done, 2 bad usage or input, 130 interrupted (with --out, rows so
 far are kept).)");

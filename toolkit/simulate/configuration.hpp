@@ -38,8 +38,8 @@ struct Configuration {
 /// Whether models without completion are to be seen (stability experiments break them on purpose).
 enum class Completion { on, off };
 
-/// The least rotation from f, of length 1, to the direction of f + a, less I. With the axis v = f × g, g that direction,
-/// and cosine c: [v] + [v]² / (1 + c). 0 where there is no direction.
+/// The least rotation from f, of length 1, to the direction of f + a, less I. With the axis v = f × g, g that
+/// direction, and cosine c: [v] + [v]² / (1 + c). 0 where there is no direction.
 Mat3 rotation_change(const Vec3& f, const Vec3& a);
 
 NeighbourLists lists_of(const MeshlessBody& body);
