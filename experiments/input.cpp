@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <mutex>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -22,6 +23,20 @@
 
 namespace cinch {
 namespace {
+
+// The last shape is kept: a study asks for the same one in cell after cell, and some take seconds to make.
+std::optional<TriangleMesh> shape_of(const std::string& name)
+{
+    static std::mutex mutex;
+    static std::string last;
+    static std::optional<TriangleMesh> kept;
+    const std::lock_guard lock(mutex);
+    if (last != name) {
+        kept = named_shape(name);
+        last = name;
+    }
+    return kept;
+}
 
 // Simulation nodes of the shipped shapes, as in the paper.
 std::size_t usual_nodes(const std::string& shape)
@@ -302,7 +317,7 @@ Input load_input(const InputOptions& options)
     guard_surface(options.input);
     for (const std::string& file : {options.weights, options.transforms})
         guard_input(file);
-    if (auto shape = named_shape(options.input)) {
+    if (auto shape = shape_of(options.input)) {
         if (!options.weights.empty() || !options.transforms.empty())
             throw InputError("--weights and --transforms need a mesh file");
         input.surface.mesh = std::move(*shape);
