@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""slurm_test.py CINCH SUBMIT: a study and a verification as array jobs of a real Slurm on this machine. Tasks and a
-node daemon are killed in the middle, what merge names is submitted again, and the result is that of a run without shards.
-Skips, saying so, where Slurm cannot run. Everything that is started ends with the test."""
+"""slurm_test.py CINCH SUBMIT: a study and a verification as array jobs of a real Slurm on this machine.
+
+Tasks and a node daemon are killed in the middle, what merge names is submitted again, and the result is that of a run
+without shards. Skips, saying so, where Slurm cannot run. Everything that is started ends with the test."""
 import contextlib
 import json
 import os
