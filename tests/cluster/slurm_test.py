@@ -163,6 +163,7 @@ def campaign(slurm, name, words, shards):
 
 
 def main():
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # what was started ends with it
     if os.geteuid() != 0:
         skip("Slurm's daemons want to be root here")
     for program in ("munged", "slurmctld", "slurmd", "sbatch"):
