@@ -41,6 +41,13 @@ def wait_for(what, condition, seconds=180):
     raise TimeoutError(what)
 
 
+def kill_tasks(folder):
+    found = subprocess.run(["pgrep", "-f", f"slurmstepd|--out {folder}"], capture_output=True, text=True)
+    for pid in found.stdout.split():
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(int(pid), signal.SIGKILL)
+
+
 class Slurm:
     """munged, slurmctld and a slurmd, in a folder of their own, on loopback."""
 
@@ -119,10 +126,7 @@ PartitionName=all Nodes={host} Default=YES MaxTime=INFINITE State=UP
         """The daemon and all that it runs, at once, as when a machine is switched off; then a new one."""
         self.node.send_signal(signal.SIGKILL)
         self.node.wait()
-        found = subprocess.run(["pgrep", "-f", f"slurmstepd|--out {self.folder}"], capture_output=True, text=True)
-        for pid in found.stdout.split():
-            with contextlib.suppress(ProcessLookupError):
-                os.kill(int(pid), signal.SIGKILL)
+        kill_tasks(self.folder)
         time.sleep(1)
         self.node = self.start("slurmd", "-D", "-f", self.conf)
 
@@ -186,6 +190,7 @@ def main():
             campaign(slurm, "study", ["study", str(plan)], 5)
             campaign(slurm, "verify", ["verify", "santa", "--nodes", "40", "--frames", "12", "--leaf", "4"], 4)
         finally:
+            kill_tasks(folder)
             for process in reversed(processes):
                 with contextlib.suppress(ProcessLookupError):
                     process.terminate()
