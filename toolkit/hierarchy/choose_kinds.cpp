@@ -30,12 +30,13 @@ std::vector<AffineMap> synthetic_frame(std::span<const Vec3> node, const RestBox
     for (auto& q : quadratic)
         for (int i = 0; i < 9; ++i)
             q(i) = uniform(strength);
-    Eigen::Quaterniond rotation(uniform(1), uniform(1), uniform(1), uniform(1));
+    const double z = uniform(1), y = uniform(1), x = uniform(1), w = uniform(1); // arguments have no order
+    Eigen::Quaterniond rotation(w, x, y, z);
     rotation.normalize();
     const Eigen::Matrix3d r = rotation.toRotationMatrix();
     std::vector<AffineMap> maps;
-    for (const Vec3& x : node) {
-        const Vec3 p = (x - box.centre) / unit;
+    for (const Vec3& at : node) {
+        const Vec3 p = (at - box.centre) / unit;
         Vec3 value = p + strain * p;
         Eigen::Matrix3d jacobian = Eigen::Matrix3d::Identity() + strain;
         for (int i = 0; i < 3; ++i) {
@@ -44,7 +45,7 @@ std::vector<AffineMap> synthetic_frame(std::span<const Vec3> node, const RestBox
         }
         value = r * value * unit;
         jacobian = r * jacobian;
-        const Vec3 t = value - jacobian * x;
+        const Vec3 t = value - jacobian * at;
         AffineMap map;
         for (int i = 0; i < 3; ++i) {
             for (int s = 0; s < 3; ++s)
