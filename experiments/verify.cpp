@@ -232,7 +232,7 @@ int verify_in_cells(const std::shared_ptr<const Inputs>& inputs, const VerifyOpt
     std::unique_ptr<PreparedInput> prepared;
     std::optional<std::size_t> prepared_body;
     std::vector<double> supports;
-    const auto run = run_campaign(
+    const CampaignRun run = run_campaign(
         campaign_of("verify", verify_plan(*inputs, options), cells.size()), options.shards, [&](std::size_t cell) {
             const auto [body, f] = cells[cell];
             const Input& input = inputs->bodies[body];
@@ -246,7 +246,7 @@ int verify_in_cells(const std::shared_ptr<const Inputs>& inputs, const VerifyOpt
             frame.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
             return Rows{frame_row(body, f, frame)};
         });
-    return run ? print_verify(*run, options.output) : 0;
+    return end_run(run, options.shards, verdict_of(run.all), [&] { print_verify(run.all, options.output); });
 }
 
 } // namespace

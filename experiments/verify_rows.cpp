@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "experiments/records/run_campaign.hpp"
+#include "experiments/report/interrupt.hpp"
 #include "experiments/verify_report.hpp"
 #include "toolkit/simulate/frame_file.hpp"
 
@@ -25,8 +26,10 @@ std::uint64_t checksum_of(const Inputs& inputs)
         take(body.surface.weights.row);
         take(body.surface.weights.node);
         take(body.surface.weights.weight);
-        for (std::size_t f : {std::size_t{0}, body.clip.frame_count() - 1})
+        for (std::size_t f = 0; f < body.clip.frame_count(); ++f) {
+            throw_if_interrupted();
             take(body.clip.frame(f));
+        }
     }
     return sum;
 }
@@ -43,7 +46,22 @@ void add(const exact::Loss& more, exact::Loss& sum)
     sum.rounding += more.rounding;
 }
 
+VerifyTotals totals_of(const Merged& all)
+{
+    VerifyTotals totals;
+    totals.frames_wanted = all.cells.size();
+    for (const Rows& cell : all.cells)
+        for (const Json& row : cell)
+            add_row(row, totals);
+    finish(totals);
+    return totals;
+}
+
+int verdict_of(const VerifyTotals& totals) { return totals.violated || !totals.ladder.holds() ? 1 : 0; }
+
 } // namespace
+
+int verdict_of(const Merged& all) { return verdict_of(totals_of(all)); }
 
 VerifiedInput verified(const Inputs& inputs)
 {
@@ -211,18 +229,13 @@ int print_verify(const Merged& all, const OutputOptions& output_options)
     from.seed = options.input.seed;
     RecordOutput output(output_options, from);
     output.describe(input.fields);
-    VerifyTotals totals;
-    totals.frames_wanted = all.cells.size();
-    for (const Rows& cell : all.cells)
-        for (const Json& row : cell)
-            add_row(row, totals);
-    finish(totals);
+    const VerifyTotals totals = totals_of(all);
     output.set(completeness_of(totals));
     output.add_all(records_of(input, options, totals));
     output.finish();
     if (!output_options.records_only())
         print_table(input, options, totals, from);
-    return totals.violated || !totals.ladder.holds() ? 1 : 0;
+    return verdict_of(totals);
 }
 
 } // namespace cinch

@@ -29,5 +29,7 @@ void add_row(const nlohmann::ordered_json& row, VerifyTotals& totals);
 
 /// What `verify` prints of a whole verification, however its rows came about. Returns its exit status.
 int print_verify(const Merged& all, const OutputOptions& options);
+/// That status alone.
+int verdict_of(const Merged& all);
 
 } // namespace cinch

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -37,8 +38,8 @@ public:
     ~ShardFile();
     ShardFile(ShardFile&&) noexcept;
 
-    bool has(std::size_t cell) const;
-    std::size_t finished() const;
+    /// Those that are finished, by their numbers.
+    const std::map<std::size_t, Rows>& cells() const;
     void add(std::size_t cell, const Rows& rows);
 
 private:

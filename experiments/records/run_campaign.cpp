@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/records/run_campaign.hpp"
 
+#include <cstdio>
+#include <optional>
+
 #include <fmt/format.h>
 
 #include "cinch/surface.hpp"
@@ -19,44 +22,59 @@ Provenance provenance_of(const Campaign& c)
     return {"cinch " + c.command, c.version, c.commit, c.compiler, c.flags, "any", "any", 0, 0};
 }
 
-std::optional<Merged> run_campaign(const Campaign& campaign, const ShardOptions& options,
-                                   const std::function<Rows(std::size_t)>& compute)
+Completeness CampaignRun::completeness() const
 {
-    const Shard shard = options.shard.empty() ? Shard{} : parse_shard(options.shard);
+    return {0, 0, is_whole(), is_whole() ? "" : interrupted_after(done, wanted, "cells")};
+}
+
+CampaignRun run_campaign(const Campaign& campaign, const ShardOptions& options,
+                         const std::function<Rows(std::size_t)>& compute)
+{
+    CampaignRun run{{campaign, std::vector<Rows>(campaign.cells)},
+                    options.shard.empty() ? Shard{} : parse_shard(options.shard)};
+    const Shard& shard = run.shard;
     if (!options.shard.empty() && options.folder.empty())
         throw InputError("--shard needs --out DIR, the folder in which the shards meet");
     std::optional<ShardFile> file;
-    if (!options.folder.empty())
+    if (!options.folder.empty()) {
         file.emplace(options.folder, campaign, shard);
-    Merged all{campaign, std::vector<Rows>(file ? 0 : campaign.cells)};
-    const std::size_t wanted = shard.of(campaign.cells);
-    std::size_t done = file ? file->finished() : 0;
+        for (const auto& [cell, rows] : file->cells())
+            run.all.cells[cell] = rows;
+        run.done = file->cells().size();
+    }
+    run.wanted = shard.of(campaign.cells);
+    const std::size_t before = run.done;
     try {
-        Progress progress(campaign.command, wanted - done);
-        const std::size_t before = done;
+        Progress progress(campaign.command, run.wanted - before);
         for (std::size_t cell = shard.index; cell < campaign.cells; cell += shard.count) {
-            if (file && file->has(cell))
+            if (file && file->cells().contains(cell))
                 continue;
             throw_if_interrupted();
-            Rows rows = compute(cell);
+            run.all.cells[cell] = compute(cell);
             if (file)
-                file->add(cell, rows);
-            else
-                all.cells[cell] = std::move(rows);
-            progress.done(++done - before);
+                file->add(cell, run.all.cells[cell]);
+            progress.done(++run.done - before);
         }
     } catch (const Interrupted&) {
-        fmt::print(stderr, "cinch: {}; {}\n", interrupted_after(done, wanted, "cells"),
-                   file ? "the same command goes on from there" : "with --out DIR they would have been kept");
-        throw;
+        if (run.done == 0)
+            throw;
     }
-    if (!file)
-        return all;
-    if (shard.count == 1)
-        return merge(options.folder);
-    fmt::print("shard {} of {}: all of its {} cells are in {}; when all shards are, run 'cinch merge {}'\n",
-               shard.index, shard.count, wanted, options.folder, options.folder);
-    return std::nullopt;
+    return run;
+}
+
+int end_run(const CampaignRun& run, const ShardOptions& options, int verdict, const std::function<void()>& print)
+{
+    if (run.shard.count == 1)
+        print();
+    else
+        fmt::print("shard {} of {}: {} of {} cells are in {}; when all shards are, run 'cinch merge {}'\n",
+                   run.shard.index, run.shard.count, run.done, run.wanted, options.folder, options.folder);
+    std::fflush(stdout);
+    if (!run.is_whole())
+        fmt::print(stderr, "cinch: {}; {}\n", run.completeness().note,
+                   options.folder.empty() ? "with --out DIR they would be kept, and the same command would go on"
+                                          : "the same command goes on from there");
+    return verdict ? verdict : run.is_whole() ? 0 : 130;
 }
 
 } // namespace cinch

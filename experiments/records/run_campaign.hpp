@@ -2,7 +2,6 @@
 #pragma once
 
 #include <functional>
-#include <optional>
 #include <string>
 
 #include "experiments/records/row_folder.hpp"
@@ -22,10 +21,24 @@ Campaign campaign_of(std::string command, nlohmann::ordered_json plan, std::size
 /// Where merged rows come from, as records say it: no machine, as rows are the same on all.
 Provenance provenance_of(const Campaign& campaign);
 
-/// Computes the cells that are not in the folder yet, in their order, with progress, and gives all rows where this run
-/// was to compute all of them; nothing, and a line on standard output, where it was one shard of several. After an
-/// interrupt throws Interrupted; finished cells are kept in the folder, and standard error says how to go on.
-std::optional<Merged> run_campaign(const Campaign& campaign, const ShardOptions& options,
-                                   const std::function<Rows(std::size_t cell)>& compute);
+/// What a run computed or found in its folder. It ends before all that it wanted only by an interrupt.
+struct CampaignRun {
+    Merged all; ///< cells that are not there have no rows
+    Shard shard;
+    std::size_t done = 0, wanted = 0; ///< cells of the shard
+
+    bool is_whole() const { return done == wanted; }
+    /// Of what it prints, and "" or why it is not whole.
+    Completeness completeness() const;
+};
+
+/// Computes the cells that are not in the folder yet, in their order, with progress. Throws Interrupted if there is no
+/// cell at the end.
+CampaignRun run_campaign(const Campaign& campaign, const ShardOptions& options,
+                         const std::function<Rows(std::size_t cell)>& compute);
+
+/// The end of a run: where it was one shard of several, a line that says how far it came, instead of `print`. Returns
+/// the exit status: `verdict` if that is not 0, else 130 after an interrupt.
+int end_run(const CampaignRun& run, const ShardOptions& options, int verdict, const std::function<void()>& print);
 
 } // namespace cinch

@@ -64,7 +64,9 @@ Json key(const InputOptions& what, const Input& input, const Contestant& c)
             {"seed", what.seed},
             {"method", name_of(c.methods)},
             {"precision", name_of(c.precision)},
-            {"kdop", c.kdop}};
+            {"kdop", c.kdop},
+            {"frames", input.clip.frame_count()},
+            {"frames_done", input.clip.frame_count()}};
 }
 
 // One frame of one contestant.
@@ -107,15 +109,13 @@ void put_rows(const InputOptions& what, const Scene& scene, Detail detail, Conte
 {
     const Json own = key(what, scene.input, c);
     Json row = own;
-    row.update({{"frames", scene.input.clip.frame_count()},
-                {"bvs", scene.bvh.bvs.size()},
+    row.update({{"bvs", scene.bvh.bvs.size()},
                 {"vertices", scene.input.surface.mesh.vertices.size()},
                 {"root_ratio", c.root.mean()},
                 {"root_max_ratio", c.root.greatest()},
                 {"mean_ratio", c.all.mean()},
                 {"max_ratio", c.all.greatest()},
-                {"width_ratio", c.width.mean()},
-                {"missing", scene.input.missing}});
+                {"width_ratio", c.width.mean()}});
     out.push_back(std::move(row));
     for (std::size_t level = 0; detail == Detail::levels && level < c.levels.size(); ++level) {
         row = own;

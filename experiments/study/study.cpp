@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/study/study.hpp"
 
-#include <fstream>
+#include <filesystem>
 #include <iostream>
 #include <iterator>
 
@@ -12,27 +12,44 @@
 #include "experiments/report/interrupt.hpp"
 #include "experiments/study/measure_cell.hpp"
 #include "experiments/study/summary.hpp"
+#include "toolkit/simulate/frame_file.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 
 namespace cinch {
+namespace {
 
-void print_study(const Merged& all, const OutputOptions& options)
+// With the bytes of its files: another file under the same name is another plan.
+nlohmann::ordered_json plan_of(const Plan& plan)
+{
+    nlohmann::ordered_json out = to_json(plan), sums = nlohmann::ordered_json::object();
+    for (const std::string& input : plan.inputs)
+        if (std::filesystem::is_regular_file(input))
+            sums[input] = checksum(read_bytes(input));
+    out["checksums"] = sums;
+    return out;
+}
+
+} // namespace
+
+void print_study(const Merged& all, const OutputOptions& options, const Completeness& completeness)
 {
     RecordOutput output(options, provenance_of(all.campaign));
-    std::size_t rows = 0;
-    for (const Rows& cell : all.cells)
+    std::size_t rows = 0, cells = 0;
+    for (const Rows& cell : all.cells) {
         rows += cell.size();
-    output.set({all.cells.size(), all.cells.size(), true, ""});
+        cells += !cell.empty();
+    }
+    output.set(completeness);
     for (const Rows& cell : all.cells)
         output.add_all(cell);
     output.finish();
     if (options.records_only())
         return;
+    print_note(completeness);
     fmt::print("{}\nroot: radius of the bound over the true one at the root, mean over frames; mean over seeds with\n"
                "its 95 % confidence (+-), and quartiles over seeds. all, max: of all BVs. width: along the axes.\n\n"
                "{} rows of {} cells; cinch {} ({}), {}\n",
-               study_table(all), rows, all.cells.size(), all.campaign.version, all.campaign.commit,
-               all.campaign.compiler);
+               study_table(all), rows, cells, all.campaign.version, all.campaign.commit, all.campaign.compiler);
 }
 
 int study(const StudyOptions& options)
@@ -43,11 +60,9 @@ int study(const StudyOptions& options)
     const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
     catch_interrupt();
-    const auto all = run_campaign(campaign_of("study", to_json(plan), cell_count(plan)), options.shards,
-                                  [&](std::size_t cell) { return measure_cell(plan, cell_of(plan, cell)); });
-    if (all)
-        print_study(*all, options.output);
-    return 0;
+    const CampaignRun run = run_campaign(campaign_of("study", plan_of(plan), cell_count(plan)), options.shards,
+                                         [&](std::size_t cell) { return measure_cell(plan, cell_of(plan, cell)); });
+    return end_run(run, options.shards, 0, [&] { print_study(run.all, options.output, run.completeness()); });
 }
 
 } // namespace cinch

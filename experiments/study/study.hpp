@@ -18,6 +18,6 @@ struct StudyOptions {
 int study(const StudyOptions& options);
 
 /// What `study` prints of all rows, however they came about.
-void print_study(const Merged& all, const OutputOptions& options);
+void print_study(const Merged& all, const OutputOptions& options, const Completeness& completeness = {});
 
 } // namespace cinch

@@ -21,6 +21,9 @@ sys.dont_write_bytecode = True
 sys.path[:0] = [os.path.dirname(CHECKER), os.path.dirname(os.path.abspath(__file__))]
 import check_certificate  # noqa: E402
 from certificate_forge import of, sealed, written  # noqa: E402
+import certificate_mutations_of_frames  # noqa: E402, F401
+import certificate_mutations_of_surfaces  # noqa: E402, F401
+import certificate_mutations_of_text  # noqa: E402, F401
 from certificate_mutations import HARMLESS, MUTATIONS  # noqa: E402
 from certificate_oracle import Oracle, double_or_ratio  # noqa: E402
 

@@ -46,7 +46,7 @@ void compute(const Folder& folder, const Campaign& what, const Shard& shard, std
 {
     ShardFile file(folder, what, shard);
     for (std::size_t cell = 0; cell < what.cells && most > 0; ++cell)
-        if (shard.has(cell) && !file.has(cell)) {
+        if (shard.has(cell) && !file.cells().contains(cell)) {
             file.add(cell, rows_of(cell));
             --most;
         }

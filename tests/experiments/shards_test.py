@@ -85,14 +85,36 @@ with tempfile.TemporaryDirectory() as place:
     rows = [json.loads(line) for line in run("study", file, "--json").stdout.splitlines()]
     runs = [row for row in rows if "level" not in row]
     assert len(runs) == 3 * cells and all(row["root_ratio"] >= 1 and row["complete"] for row in runs)
+    assert all(row["frames_done"] == row["frames"] == 1 for row in rows)
     assert run("study", "-", "--json", input=json.dumps(plan).encode()).stdout.splitlines() == [
         json.dumps(row, separators=(",", ":"), ensure_ascii=False).encode() for row in rows]
     run("study", file, "--shard", "0/7", status=2)  # without a folder
     run("study", file, "--out", file / "rows", status=2)
 verified = ["verify", "brain-3500" if full else "santa", "--nodes", 40, "--frames", 9, "--leaf", 16, "--kdop", 14]
 compare("verify", verified, [("--json",), ()], kills=3)
-with tempfile.TemporaryDirectory() as place:  # a refuted bound in one shard is refuted in the whole
+with tempfile.TemporaryDirectory() as place:  # a refuted bound is refuted in its shard and in the whole
     sabotaged = [*verified, "--sabotage", "lower-h", "--out", pathlib.Path(place) / "rows"]
-    run(*sabotaged, "--shard", "0/2")
-    run(*sabotaged, "--shard", "1/2")
+    statuses = [subprocess.run([cinch, *map(str, sabotaged), "--shard", f"{i}/2"], stdout=subprocess.DEVNULL).returncode
+                for i in (0, 1, 0, 1)]  # the second time nothing is left to do: the verdict stays
+    assert max(statuses) == 1 and statuses[:2] == statuses[2:], statuses
     assert b" 0 violated" not in run("merge", pathlib.Path(place) / "rows", status=1).stdout
+with tempfile.TemporaryDirectory() as place:  # another file under the same name is another plan
+    plan_file, mesh = pathlib.Path(place) / "plan.json", pathlib.Path(place) / "mesh.off"
+    plan_file.write_text(json.dumps({"inputs": str(mesh), "nodes": 2, "frames": 1, "seeds": "0-1"}))
+    for height in (1, 2):
+        mesh.write_text(f"OFF 3 1 0\n0 0 0\n1 0 0\n0 1 {height}\n3 0 1 2\n")
+        run("study", plan_file, "--out", pathlib.Path(place) / "rows", "--shard", f"{height - 1}/2")
+    assert b"another plan" in run("merge", pathlib.Path(place) / "rows", status=2).stderr
+with tempfile.TemporaryDirectory() as place:  # Ctrl-C: what is there is printed, and says that it is not all
+    file = pathlib.Path(place) / "plan.json"
+    file.write_text(json.dumps({"inputs": "santa", "nodes": 8, "frames": 1, "leaf": 64, "seeds": "0-999"}))
+    for output in ((), ("--json",)):
+        process = subprocess.Popen([cinch, "study", str(file), *output], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        time.sleep(6)
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate()
+        assert process.returncode == 130 and b"interrupted after" in err, (process.returncode, err)
+        if output:
+            assert all(json.loads(line)["complete"] is False for line in out.splitlines()) and out
+        else:
+            assert b"interrupted after" in out and b"of 1000 cells" in out, out
