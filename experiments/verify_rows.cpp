@@ -36,7 +36,7 @@ std::uint64_t checksum_of(const Inputs& inputs)
 
 Json to_json(const exact::Loss& loss) { return {loss.box, loss.interval, loss.corner, loss.rounding}; }
 
-exact::Loss loss_of(const Json& json) { return {json[0], json[1], json[2], json[3]}; }
+exact::Loss loss_of(const Json& sums) { return {sums[0], sums[1], sums[2], sums[3]}; }
 
 void add(const exact::Loss& more, exact::Loss& sum)
 {
