@@ -67,6 +67,13 @@ def compare(name, words, outputs, kills=5, shards=7):
         print(f"{name}: whole, {shards} shards and {kills} kills give the same {len(whole[outputs[0]])} bytes")
 
 
+def records(text):
+    """Without what is said of one machine."""
+    rows = [json.loads(line) for line in without_times(text).splitlines()]
+    return [{key: value for key, value in row.items() if key not in ("command", "cpu", "simd_target", "threads")}
+            for row in rows]
+
+
 def without_times(text):
     """Times are marked as such: "seconds" in records, and what a table says it took."""
     text = re.sub(rb'"seconds":[^,}]*', b'"seconds":0', text)
@@ -92,6 +99,21 @@ with tempfile.TemporaryDirectory() as place:
     run("study", file, "--out", file / "rows", status=2)
 verified = ["verify", "brain-3500" if full else "santa", "--nodes", 40, "--frames", 9, "--leaf", 16, "--kdop", 14]
 compare("verify", verified, [("--json",), ()], kills=3)
+with tempfile.TemporaryDirectory() as place:  # what cells add up to is what a run without cells says
+    cells_say = records(run(*verified, "--json", "--out", place).stdout)
+    assert cells_say == records(run(*verified, "--json").stdout)
+with tempfile.TemporaryDirectory() as place:
+    file = pathlib.Path(place) / "plan.json"
+    file.write_text(json.dumps({"inputs": ["santa"], "frames": 2, "leaf": 16, "nodes": 40, "seeds": 0,
+                                "detail": "levels", "methods": ["eq12", "best"]}))
+    tightness = {(row["method"], row["level"]): row for row in records(run(
+        *"tightness santa --nodes 40 --frames 2 --leaf 16 --sweep 8 --motion strong --json".split()).stdout)
+        if "level" in row and row["n"] == 40}
+    studied = [row for row in records(run("study", file, "--json").stdout) if "level" in row]
+    assert len(studied) == 20
+    for row in studied:
+        known = tightness[row["method"], row["level"]]
+        assert all(row[key] == known[key] for key in ("bvs", "mean_ratio", "max_ratio")), (row, known)
 with tempfile.TemporaryDirectory() as place:  # a refuted bound is refuted in its shard and in the whole
     sabotaged = [*verified, "--sabotage", "lower-h", "--out", pathlib.Path(place) / "rows"]
     statuses = [subprocess.run([cinch, *map(str, sabotaged), "--shard", f"{i}/2"], stdout=subprocess.DEVNULL).returncode
