@@ -102,7 +102,7 @@ compare("verify", verified, [("--json",), ()], kills=3)
 with tempfile.TemporaryDirectory() as place:  # what cells add up to is what a run without cells says
     cells_say = records(run(*verified, "--json", "--out", place).stdout)
     assert cells_say == records(run(*verified, "--json").stdout)
-with tempfile.TemporaryDirectory() as place:
+with tempfile.TemporaryDirectory() as place:  # what different commands say of one thing
     file = pathlib.Path(place) / "plan.json"
     file.write_text(json.dumps({"inputs": ["santa"], "frames": 2, "leaf": 16, "nodes": 40, "seeds": 0,
                                 "detail": "levels", "methods": ["eq12", "best"]}))
@@ -114,6 +114,13 @@ with tempfile.TemporaryDirectory() as place:
     for row in studied:
         known = tightness[row["method"], row["level"]]
         assert all(row[key] == known[key] for key in ("bvs", "mean_ratio", "max_ratio")), (row, known)
+    levels = [row for row in records(run(*"verify santa --nodes 40 --frames 2 --leaf 16 --kdop 6 --json".split()).stdout)
+              if "level" in row]
+    assert len(levels) == 10
+    for row in levels:
+        known = tightness["best", row["level"]]
+        for key in ("mean_ratio", "max_ratio", "box_loss", "interval_loss"):  # sums of other orders
+            assert abs(row[key] - known[key]) < 1e-13, (key, row, known)
 with tempfile.TemporaryDirectory() as place:  # a refuted bound is refuted in its shard and in the whole
     sabotaged = [*verified, "--sabotage", "lower-h", "--out", pathlib.Path(place) / "rows"]
     statuses = [subprocess.run([cinch, *map(str, sabotaged), "--shard", f"{i}/2"], stdout=subprocess.DEVNULL).returncode
