@@ -137,7 +137,7 @@ scene, 130 interrupted (results so far are printed).)");
 void add_tightness(CLI::App& app, TightnessOptions& o)
 {
     CLI::App& command = *app.add_subcommand("tightness", "looseness by BVH level and node count (Fig. 5)");
-    add_input(command, o.input);
+    add_input(command, o.input, &o.lists);
     command
         .add_option_function<std::vector<std::string>>(
             "--methods",
@@ -167,13 +167,17 @@ void add_tightness(CLI::App& app, TightnessOptions& o)
     command.add_option("--threads", o.threads, wrapped("threads [all cores]"))
         ->check(CLI::Range(1, 1024))
         ->option_text("N");
+    add_shards(command, o.shards);
     add_output(command, o.output);
     command.footer(R"(Without --motion a shape or mesh is measured under 'strong' and 'mild'.
+Several inputs, several --nodes ("8,65", "1-20", or "16..512", doubled) or seeds
+are a study: a row for each level of each, and means over the seeds.
 
 Examples:
   cinch tightness                               the brain, about two minutes
   cinch tightness hand.ply --nodes 200 --methods eq12,best --plot hand.svg
   cinch tightness robot.glb --clip Robot_Dance --csv > robot.csv
+  cinch tightness a.ply b.ply --seed 1-20 --nodes 16..512 --motion strong,mild
 
 Exit status: 0 done, 1 a bound violated, 2 bad usage or input, 130 interrupted
 (results so far are printed).)");

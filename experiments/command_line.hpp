@@ -16,7 +16,7 @@
 #include "experiments/cost/cost.hpp"
 #include "experiments/fuzz/fuzz.hpp"
 #include "experiments/stability/stability.hpp"
-#include "experiments/tightness.hpp"
+#include "experiments/tightness/tightness.hpp"
 #include "experiments/verify.hpp"
 #endif
 

@@ -149,40 +149,30 @@ void add_fuzz(CLI::App& app, FuzzOptions& o)
             },
             ""))
         ->option_text("NAME");
-    command
-        .add_option_function<std::string>(
-            "--shard",
-            [&o](const std::string& text) {
-                unsigned long long i = 0, n = 0;
-                int used = 0;
-                if (std::sscanf(text.c_str(), "%llu/%llu%n", &i, &n, &used) != 2 ||
-                    used != static_cast<int>(text.size()) || n == 0 || i >= n)
-                    throw CLI::ValidationError("--shard", "expected I/N with 0 <= I < N, found '" + text + "'");
-                o.shard = i;
-                o.shards = n;
-            },
-            wrapped("run every N-th case, beginning with the I-th, I from 0"))
+    option("--out", o.shards.folder,
+           "keep what is finished in this folder; the same command goes on from there; of a number of --cases")
+        ->option_text("DIR");
+    option("--shard", o.shards.shard,
+           "one part of N, I from 0 to N - 1 (slurm: that of the array job's task); with --out for 'cinch merge DIR', "
+           "without every N-th case, beginning with the I-th")
         ->option_text("I/N");
     option(
         "--resume", o.resume,
         "keep the state in this file, and continue from it if it is there; it must be of the same program and options")
         ->option_text("FILE");
-    option("--corpus", o.corpus, "where shrunk failures are saved [data/hard]")->option_text("DIR");
+    option("--corpus", o.corpus, "where shrunk failures are saved [data/hard, or DIR/failures]")->option_text("DIR");
     option("--threads", o.threads, "threads [all cores]")->check(CLI::Range(1, 1024))->option_text("N");
     add_output(command, o.output, Draws::nothing);
     option("--sabotage", o.defect,
            "for tests: plant a defect: no-rounding, lower-h and small-box must be found, wrong-lambda and sum-order "
            "must prove harmless; nothing is saved")
-        ->transform(one_of<Defect>({{"no-rounding", Defect::no_rounding},
-                                    {"wrong-lambda", Defect::wrong_lambda},
-                                    {"lower-h", Defect::lower_h},
-                                    {"sum-order", Defect::sum_order},
-                                    {"small-box", Defect::small_box}}))
+        ->transform(one_of<Defect>({defects.begin() + 1, defects.end()}))
         ->option_text("KIND");
     command.footer(R"(Examples:
   cinch fuzz --seconds 600                 ten minutes, all families
   cinch fuzz --cases 1000000 --resume s    can be stopped and continued
   cinch fuzz --shard 0/4 --seconds 600     one of four machines
+  cinch fuzz --cases 1000000000 --out rows --shard slurm   one of a cluster's
 
 A failure is shrunk to the smallest case that still fails and saved as JSON.
 Exit status: 0 no violation, 1 a violation, 2 bad usage, 130 interrupted (the

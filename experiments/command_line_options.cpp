@@ -80,23 +80,28 @@ void add_shards(CLI::App& command, ShardOptions& o)
         ->needs(folder);
 }
 
-void add_input(CLI::App& command, InputOptions& o)
+void add_input(CLI::App& command, InputOptions& o, InputLists* lists)
 {
-    command
-        .add_option("INPUT", o.input,
-                    wrapped(fmt::format(
-                        "a shape ({}), a scene ({}, or a .json file), a mesh ({}) or a skinned character (.glb, .gltf)",
-                        fmt::join(shape_names(), ", "), fmt::join(shipped_scenes(), ", "), mesh_extensions())))
-        ->option_text("[brain]");
     const auto option = options_of(command);
-    option("--nodes", o.nodes,
-           "simulation nodes sampled in the volume [the paper's number for a shape, 100 for a mesh]")
-        ->check(CLI::Range(1, 100000))
-        ->option_text("N");
+    const std::string inputs = fmt::format(
+        "a shape ({}), a scene ({}, or a .json file), a mesh ({}) or a skinned character (.glb, .gltf)",
+        fmt::join(shape_names(), ", "), fmt::join(shipped_scenes(), ", "), mesh_extensions());
+    const std::string nodes = "simulation nodes sampled in the volume [the paper's number for a shape, 100 for a mesh]";
+    const std::string motions = fmt::format("scripted motion: {} [strong]", motion_names);
+    if (lists) {
+        option("INPUT", lists->inputs, inputs)->option_text("[brain]...");
+        option("--nodes", lists->nodes, nodes)->option_text("LIST");
+    } else {
+        option("INPUT", o.input, inputs)->option_text("[brain]");
+        option("--nodes", o.nodes, nodes)->check(CLI::Range(1, 100000))->option_text("N");
+    }
     option("--support", o.support, "reach of a simulation node, in fill distances [2]")
         ->check(within(1e-3, 1e3))
         ->option_text("X");
-    option("--motion", o.motion, fmt::format("scripted motion: {} [strong]", motion_names))->option_text("NAME");
+    if (lists)
+        option("--motion", lists->motions, motions)->delimiter(',')->option_text("NAME,...");
+    else
+        option("--motion", o.motion, motions)->option_text("NAME");
     option("--weights", o.weights, "weights of a mesh's vertices as text, see below")->option_text("FILE");
     option("--transforms", o.transforms, "transforms of the simulation nodes as text, see below")->option_text("FILE");
     option("--body", o.body, "which body of a scene [all for verify, else the first]")->option_text("NAME");
@@ -107,7 +112,10 @@ void add_input(CLI::App& command, InputOptions& o)
     option("--frames", o.frames, "how many frames, evenly spread, the last one included [4 if scripted, else all]")
         ->check(CLI::Range(1, 100000))
         ->option_text("N");
-    option("--seed", o.seed, "seed of everything random [0]")->option_text("N");
+    if (lists)
+        option("--seed", lists->seeds, "seed of everything random [0]")->option_text("LIST");
+    else
+        option("--seed", o.seed, "seed of everything random [0]")->option_text("N");
     command.add_flag("--partial", o.partial,
                      wrapped("bound what is modelled of a character that has more (morph targets, parts without a "
                              "skin, unknown extensions); every result "

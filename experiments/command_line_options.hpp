@@ -57,7 +57,7 @@ void add_shards(CLI::App& command, ShardOptions& o);
 void add_arithmetic(CLI::App& command, Precision& precision, int& passes);
 /// --method, one or several.
 void add_methods(CLI::App& command, Methods& methods);
-/// INPUT, and which part and frames of it.
-void add_input(CLI::App& command, InputOptions& o);
+/// INPUT, and which part and frames of it; with lists INPUT, --nodes, --motion and --seed go there.
+void add_input(CLI::App& command, InputOptions& o, InputLists* lists = nullptr);
 
 } // namespace cinch

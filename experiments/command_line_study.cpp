@@ -29,6 +29,10 @@ void add_study(CLI::App& app, StudyOptions& o)
 and of these, one value each:
   frames      how many, evenly spread                           [all]
   leaf        most triangles per leaf                           [1]
+  passes      evaluations of the dual function                  [1]
+  support     reach of a simulation node, in fill distances     [2]
+  fps         frames per second sampled from a character's clip [30]
+  partial     bound what is modelled of characters              [false]
   detail      "run", or rows of "levels", "frames", "bvs" too   ["run"]
 Whole numbers may be ranges: "1-20" is all of them, "16..512" is doubled.
 

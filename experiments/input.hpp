@@ -30,6 +30,12 @@ struct InputOptions {
                           ///< modelled is refused
 };
 
+/// Lists of what a command can take many of, as people write them; empty where not given.
+struct InputLists {
+    std::vector<std::string> inputs, motions;
+    std::string nodes, seeds;
+};
+
 /// A surface with the frames that deform it.
 struct Input {
     std::string name;

@@ -126,7 +126,8 @@ int main(int argc, char** argv)
         if (parsed.got_subcommand("fuzz")) {
             if (!fuzz_options.seconds && !fuzz_options.cases)
                 fuzz_options.cases = 100000;
-            if (fuzz_options.corpus.empty() && fuzz_options.defect == Defect::none)
+            if (fuzz_options.corpus.empty() && fuzz_options.defect == Defect::none &&
+                fuzz_options.shards.folder.empty())
                 fuzz_options.corpus = "data/hard";
             return fuzz(fuzz_options);
         }

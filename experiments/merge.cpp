@@ -7,6 +7,8 @@
 #include "experiments/records/row_folder.hpp"
 #include "experiments/study/study.hpp"
 #ifdef CINCH_EXACT
+#include "experiments/fuzz/fuzz_rows.hpp"
+#include "experiments/tightness/tightness.hpp"
 #include "experiments/verify_rows.hpp"
 #endif
 
@@ -22,6 +24,10 @@ int merge_shards(const MergeOptions& options)
 #ifdef CINCH_EXACT
     if (all.campaign.command == "verify")
         return print_verify(all, options.output);
+    if (all.campaign.command == "tightness")
+        return print_tightness(all, options.output);
+    if (all.campaign.command == "fuzz")
+        return print_fuzz(all, options.output, options.folder);
 #endif
     throw InputError::in_file(
         options.folder, fmt::format("has rows of 'cinch {}', which this program cannot print", all.campaign.command));

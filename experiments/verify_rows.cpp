@@ -3,36 +3,14 @@
 
 #include <algorithm>
 
+#include "experiments/input_checksum.hpp"
 #include "experiments/records/run_campaign.hpp"
-#include "experiments/report/interrupt.hpp"
 #include "experiments/verify_report.hpp"
-#include "toolkit/simulate/frame_file.hpp"
 
 namespace cinch {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-// The bytes of what is deformed and of all that deforms it: another file under the same name is another plan.
-std::uint64_t checksum_of(const Inputs& inputs)
-{
-    std::uint64_t sum = checksum_of_nothing;
-    auto take = [&](const auto& all) {
-        sum = checksum({reinterpret_cast<const char*>(all.data()), all.size() * sizeof(all[0])}, sum);
-    };
-    for (const Input& body : inputs.bodies) {
-        take(body.surface.mesh.vertices);
-        take(body.surface.mesh.triangles);
-        take(body.surface.weights.row);
-        take(body.surface.weights.node);
-        take(body.surface.weights.weight);
-        for (std::size_t f = 0; f < body.clip.frame_count(); ++f) {
-            throw_if_interrupted();
-            take(body.clip.frame(f));
-        }
-    }
-    return sum;
-}
 
 Json to_json(const exact::Loss& loss) { return {loss.box, loss.interval, loss.corner, loss.rounding}; }
 

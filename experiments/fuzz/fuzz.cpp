@@ -4,7 +4,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -14,11 +13,12 @@
 #include <unistd.h>
 
 #include "cinch/surface.hpp"
+#include "experiments/fuzz/fuzz_failure.hpp"
+#include "experiments/fuzz/fuzz_rows.hpp"
 #include "experiments/fuzz/fuzz_state.hpp"
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/number.hpp"
 #include "experiments/report/provenance.hpp"
-#include "experiments/report/whole_file.hpp"
 
 namespace cinch {
 namespace {
@@ -31,36 +31,18 @@ constexpr std::uint64_t first_block = 64, largest_block = 8192;
 constexpr auto shortest = std::chrono::milliseconds(20), longest = std::chrono::milliseconds(80),
                between_saves = std::chrono::milliseconds(100);
 
-const char* name_of(Defect defect)
-{
-    switch (defect) {
-    case Defect::none:
-        return "";
-    case Defect::no_rounding:
-        return "no-rounding";
-    case Defect::wrong_lambda:
-        return "wrong-lambda";
-    case Defect::lower_h:
-        return "lower-h";
-    case Defect::sum_order:
-        return "sum-order";
-    case Defect::small_box:
-        return "small-box";
-    }
-    return "";
-}
-
 class Session {
 public:
     explicit Session(const FuzzOptions& options)
-        : options_(options), threads_(options.threads > 0 ? options.threads : tbb::info::default_concurrency()),
+        : options_(options), shard_(options.shards.shard.empty() ? Shard{} : parse_shard(options.shards.shard)),
+          threads_(options.threads > 0 ? options.threads : tbb::info::default_concurrency()),
           terminal_(isatty(STDERR_FILENO) == 1), output_(options.output, provenance(threads_, options.seed))
     {
         if (options_.resume.empty())
             return;
         const Provenance from = provenance(threads_, options_.seed);
         file_.emplace(options_.resume, FuzzSettings{from.version, from.commit, options_.seed, options_.family,
-                                                    options_.shard, options_.shards, name_of(options_.defect)});
+                                                    shard_.index, shard_.count, name_of(options_.defect)});
         state_ = file_->found();
         resumed_from_ = state_.next;
         seconds_before_ = state_.seconds;
@@ -122,7 +104,7 @@ private:
 
     FuzzCase draw(std::uint64_t of_shard) const
     {
-        return draw_case(options_.seed, of_shard * options_.shards + options_.shard, options_.family);
+        return draw_case(options_.seed, of_shard * shard_.count + shard_.index, options_.family);
     }
 
     void report(std::uint64_t of_shard)
@@ -132,30 +114,13 @@ private:
         // The first failure of each family is shrunk: a broken bound fails everywhere.
         if (!state_.shrunk.insert(found.family).second)
             return;
-        const FuzzCase smallest = shrink(found, options_.defect);
-        const std::string text = to_json(smallest, find_fault(smallest, options_.defect));
-        std::string place;
-        if (!options_.corpus.empty()) {
-            std::error_code error;
-            std::filesystem::create_directories(options_.corpus, error);
-            if (!std::filesystem::is_directory(options_.corpus, error))
-                throw InputError::in_file(options_.corpus, "is no folder and cannot be made one");
-            const auto path = std::filesystem::path(options_.corpus) /
-                              fmt::format("{}-{:x}.json", smallest.family, std::hash<std::string>{}(text));
-            write_whole(path, text + "\n");
-            place = path.string();
-        }
+        const FuzzFailure failure = shrink_and_save(found, options_.defect, options_.corpus);
         if (terminal_)
             fmt::print(stderr, "\r\x1b[K");
-        nlohmann::ordered_json record{
-            {"experiment", "fuzz"}, {"index", of_shard * options_.shards + options_.shard}, {"saved", place}};
-        record.update(nlohmann::ordered_json::parse(text));
-        output_.add(record);
-        if (!options_.output.records_only()) {
-            fmt::print("violated: case {} of family {}, shrunk to n = {}:\n  {}\n  {}\n",
-                       of_shard * options_.shards + options_.shard, found.family, smallest.nodes(),
-                       find_fault(smallest, options_.defect), place.empty() ? text : place);
-        }
+        const std::uint64_t index = of_shard * shard_.count + shard_.index;
+        output_.add(record_of(failure, index));
+        if (!options_.output.records_only())
+            print(failure, index);
         std::fflush(stdout);
     }
 
@@ -194,8 +159,8 @@ private:
                      {"violations", state_.violations},
                      {"seconds", seconds},
                      {"family", options_.family},
-                     {"shard", options_.shard},
-                     {"shards", options_.shards}});
+                     {"shard", shard_.index},
+                     {"shards", shard_.count}});
         output_.finish();
         if (options_.output.records_only())
             return;
@@ -208,6 +173,7 @@ private:
     }
 
     const FuzzOptions& options_;
+    Shard shard_;
     int threads_;
     bool terminal_;
     RecordOutput output_;
@@ -224,6 +190,8 @@ int fuzz(const FuzzOptions& options)
 {
     if (options.seconds && !(std::isfinite(*options.seconds) && *options.seconds >= 0)) // NaN is in every range
         throw InputError(fmt::format("--seconds {}: expected seconds >= 0", *options.seconds));
+    if (!options.shards.folder.empty())
+        return fuzz_in_cells(options);
     return Session(options).run();
 }
 

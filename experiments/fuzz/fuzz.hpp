@@ -6,7 +6,7 @@
 #include <string>
 
 #include "experiments/fuzz/fuzz_case.hpp"
-#include "experiments/report/record_output.hpp"
+#include "experiments/records/run_campaign.hpp"
 
 namespace cinch {
 
@@ -15,9 +15,9 @@ struct FuzzOptions {
     std::optional<std::uint64_t> cases; ///< a limit, if given; of this shard, those of a resumed state included
     std::uint64_t seed = 0;
     std::string family; ///< empty: all in turn
-    std::uint64_t shard = 0, shards = 1;
-    std::string resume; ///< state file; empty: none
-    std::string corpus; ///< where shrunk failures go
+    ShardOptions shards; ///< without a folder: every N-th case, from the I-th on; with one, a campaign of `cases` in all
+    std::string resume;  ///< state file; empty: none
+    std::string corpus;  ///< where shrunk failures go; empty: nowhere, or into the folder
     int threads = 0;
     OutputOptions output;
     Defect defect = Defect::none;

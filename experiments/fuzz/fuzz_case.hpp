@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "experiments/case_file.hpp"
@@ -44,6 +46,14 @@ enum class Defect {
     sum_order,    ///< sums taken backwards: harmless, the error bound holds in any order
     small_box,    ///< the tightest rest box shrunk by one ulp: must be found
 };
+
+inline constexpr std::array defects{std::pair{"", Defect::none},
+                                    std::pair{"no-rounding", Defect::no_rounding},
+                                    std::pair{"wrong-lambda", Defect::wrong_lambda},
+                                    std::pair{"lower-h", Defect::lower_h},
+                                    std::pair{"sum-order", Defect::sum_order},
+                                    std::pair{"small-box", Defect::small_box}};
+constexpr const char* name_of(Defect defect) { return defects[static_cast<std::size_t>(defect)].first; }
 
 /// Empty if every method of the toolkit holds against the exact side; otherwise what is wrong.
 std::string find_fault(const FuzzCase& problem, Defect defect);

@@ -140,10 +140,10 @@ Rows measure_cell(const Plan& plan, const InputOptions& what)
         for (const Precision precision : plan.precisions)
             for (const int kdop : plan.kdops) {
                 Contestant c{methods, precision, static_cast<std::size_t>(kdop), nullptr, {}, {}, {}, {}, {}, {}};
-                c.refit = or_leave([=] {
+                c.refit = or_leave([=, passes = static_cast<int>(plan.passes)] {
                     return std::make_unique<Refitter>(
                         scene->bvh, scene->input.surface,
-                        RefitOptions{.methods = methods, .kdop = kdop, .precision = precision});
+                        RefitOptions{.methods = methods, .kdop = kdop, .precision = precision, .passes = passes});
                 });
                 c.levels.resize(scene->bvh.level.empty() ? 0 : scene->bvh.level.size() - 1);
                 contestants.push_back(std::move(c));

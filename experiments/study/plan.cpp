@@ -68,6 +68,22 @@ public:
             fail(field, fmt::format("expected a whole number from {} on, found {}", least, root_[field].dump()));
         out = root_[field].get<std::uint64_t>();
     }
+    void real(const char* field, double& out, double least, double most)
+    {
+        if (!take(field))
+            return;
+        if (!root_[field].is_number() || !(root_[field].get<double>() >= least && root_[field].get<double>() <= most))
+            fail(field, fmt::format("expected a number from {} to {}, found {}", least, most, root_[field].dump()));
+        out = root_[field].get<double>();
+    }
+    void flag(const char* field, bool& out)
+    {
+        if (!take(field))
+            return;
+        if (!root_[field].is_boolean())
+            fail(field, fmt::format("expected true or false, found {}", root_[field].dump()));
+        out = root_[field].get<bool>();
+    }
     void nothing_else() const
     {
         for (const auto& [name, value] : root_.items())
@@ -155,6 +171,12 @@ Plan parse_plan(const std::string& text, const std::string& file)
     }
     reader.number("frames", plan.frames, 1);
     reader.number("leaf", plan.leaf, 1);
+    reader.number("passes", plan.passes, 0);
+    if (plan.passes > 64)
+        reader.fail("passes", fmt::format("expected a whole number from 0 to 64, found {}", plan.passes));
+    reader.real("fps", plan.fps, 1e-3, 1e6);
+    reader.real("support", plan.support, 1e-3, 1e3);
+    reader.flag("partial", plan.partial);
     std::vector<std::string> detail{"run"};
     reader.words<std::string>("detail", detail, as_it_is);
     const auto* const found = std::find(details.begin(), details.end(), detail[0]);
@@ -182,6 +204,10 @@ Json to_json(const Plan& plan)
             {"kdops", plan.kdops},
             {"frames", plan.frames},
             {"leaf", plan.leaf},
+            {"passes", plan.passes},
+            {"fps", plan.fps},
+            {"support", plan.support},
+            {"partial", plan.partial},
             {"detail", details[static_cast<std::size_t>(plan.detail)]}};
 }
 
@@ -204,6 +230,9 @@ InputOptions cell_of(const Plan& plan, std::size_t cell)
     what.nodes = next(plan.nodes);
     what.input = next(plan.inputs);
     what.frames = plan.frames;
+    what.fps = plan.fps;
+    what.support = plan.support;
+    what.partial = plan.partial;
     return what;
 }
 

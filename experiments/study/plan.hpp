@@ -29,6 +29,10 @@ struct Plan {
     std::vector<int> kdops{6};
     std::uint64_t frames = 0; ///< 0: all
     std::uint64_t leaf = 1;   ///< most triangles per leaf
+    std::uint64_t passes = 1; ///< evaluations of the dual function
+    double fps = 0;           ///< of a character's clip; 0: as usual
+    double support = 0;       ///< reach of a simulation node, in fill distances; 0: as usual
+    bool partial = false;     ///< bound what is modelled of characters
     Detail detail = Detail::run;
 };
 

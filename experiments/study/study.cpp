@@ -57,12 +57,17 @@ int study(const StudyOptions& options)
     const std::string text =
         options.plan == "-" ? std::string(std::istreambuf_iterator<char>(std::cin), {}) : read_bytes(options.plan);
     const Plan plan = parse_plan(text, options.plan == "-" ? "standard input" : options.plan);
-    const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
+    return study(plan, options.shards, options.threads, options.output);
+}
+
+int study(const Plan& plan, const ShardOptions& shards, int wanted_threads, const OutputOptions& output)
+{
+    const int threads = wanted_threads > 0 ? wanted_threads : tbb::info::default_concurrency();
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
     catch_interrupt();
-    const CampaignRun run = run_campaign(campaign_of("study", plan_of(plan), cell_count(plan)), options.shards,
+    const CampaignRun run = run_campaign(campaign_of("study", plan_of(plan), cell_count(plan)), shards,
                                          [&](std::size_t cell) { return measure_cell(plan, cell_of(plan, cell)); });
-    return end_run(run, options.shards, 0, [&] { print_study(run.all, options.output, run.completeness()); });
+    return end_run(run, shards, 0, [&] { print_study(run.all, output, run.completeness()); });
 }
 
 } // namespace cinch
