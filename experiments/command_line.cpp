@@ -112,6 +112,7 @@ void add_collide(CLI::App& app, CollideOptions& o)
     option("--seed", o.seed, "seed of everything random [0]")->option_text("N");
     command.add_flag("--cold", o.cold,
                      wrapped("evict the caches before every frame, as an application's other work does"));
+    add_shards(command, o.shards);
     add_output(command, o.output);
     std::string about = "Backends:\n";
     for (const BackendKind& kind : backend_kinds()) {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "cinch/surface.hpp"
+#include "experiments/collide/collide.hpp"
 #include "experiments/records/row_folder.hpp"
 #include "experiments/study/study.hpp"
 #ifdef CINCH_EXACT
@@ -21,6 +22,8 @@ int merge_shards(const MergeOptions& options)
         print_study(all, options.output);
         return 0;
     }
+    if (all.campaign.command == "collide")
+        return print_collide(all, options.output);
 #ifdef CINCH_EXACT
     if (all.campaign.command == "verify")
         return print_verify(all, options.output);

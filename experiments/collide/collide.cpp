@@ -2,14 +2,19 @@
 #include "experiments/collide/collide.hpp"
 
 #include <algorithm>
+#include <filesystem>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "cinch/surface.hpp"
+#include "experiments/collide/collide_rows.hpp"
 #include "experiments/collide/collide_tables.hpp"
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/or_leave.hpp"
 #include "experiments/simulation/find_scene.hpp"
+#include "toolkit/simulate/frame_file.hpp"
+#include "toolkit/surface/read_mesh.hpp"
 
 namespace cinch {
 namespace {
@@ -63,93 +68,90 @@ SceneResult run(const CollideScene& scene, const std::vector<BackendKind>& kinds
     return result;
 }
 
-Json record(const SceneResult& r, const Measured& m, bool cold)
+// A cell: a scene, with the backends that run on it.
+struct SceneCell {
+    std::string scene;
+    std::size_t bodies = 0; ///< only the first so many; 0: all
+    bool own_alone = false;
+
+    std::string name() const { return bodies ? fmt::format("{}/{}", scene, bodies) : scene; }
+};
+
+std::vector<SceneCell> cells_of(const CollideOptions& options, const std::vector<BackendKind>& kinds)
 {
-    Json out{{"experiment", "collide"},
-             {"scene", r.scene},
-             {"backend", m.backend},
-             {"bodies", r.bodies},
-             {"vertices", r.vertices},
-             {"n", r.nodes},
-             {"frames_done", m.frames},
-             {"frames", m.frames_wanted},
-             {"rounds_done", m.rounds},
-             {"rounds", m.rounds_wanted},
-             {"complete", m.is_complete()},
-             {"cold", cold},
-             {"evaluate_ms", m.evaluate_ms},
-             {"update_ms", m.update_ms},
-             {"query_ms", m.query_ms},
-             {"total_ms", m.total_ms},
-             {"pairs", m.pairs},
-             {"pairs_differing", m.differing},
-             {"megabytes_per_body", m.megabytes}};
-    if (const Measured* full = r.of("refit-1"))
-        out["gain"] = full->total_ms / m.total_ms;
-    if (m.counts) {
-        const QueryCounts& c = m.sums;
-        const double frames = static_cast<double>(m.frames),
-                     tests = std::max<double>(1, static_cast<double>(c.triangle_tests));
-        auto mean = [&](auto x) { return static_cast<double>(x) / frames; };
-        out.update({{"mean_bounds", mean(c.updates.bounds)},
-                    {"mean_leaves", mean(c.updates.leaves)},
-                    {"mean_vertices", mean(c.updates.vertices)},
-                    {"mean_merged", mean(c.updates.merged)},
-                    {"mean_box_tests", mean(c.box_tests)},
-                    {"mean_leaf_pairs", mean(c.leaf_pairs)},
-                    {"mean_triangle_tests", mean(c.triangle_tests)},
-                    {"share_double", static_cast<double>(c.in_double) / tests},
-                    {"share_exact", static_cast<double>(c.in_exact) / tests}});
-    }
-    auto rounded = [](const std::vector<double>& all) { // six digits say it
-        Json list = Json::array();
-        for (const double x : all)
-            list.push_back(std::stod(fmt::format("{:.6g}", x)));
-        return list;
-    };
-    out.update({{"pairs_of_frame", rounded(m.pairs_of_frame)}, {"total_ms_of_frame", rounded(m.total_of_frame)}});
-    return out;
+    std::vector<SceneCell> cells;
+    for (const std::string& name : options.scenes)
+        cells.push_back({name});
+    if (!options.scenes.empty())
+        return cells;
+    for (int ring = 1; ring <= 8; ++ring)
+        cells.push_back({fmt::format("santa-ring-{}", ring)});
+    cells.push_back({"fishes"});
+    if (std::any_of(kinds.begin(), kinds.end(), [](const BackendKind& k) { return k.name == "cinch"; }))
+        for (const std::size_t fewer : {12, 6}) // how time grows with bodies
+            cells.push_back({"fishes", fewer, true});
+    return cells;
 }
 
-} // namespace
-
-int collide(const CollideOptions& options)
-{
-    const Provenance from = provenance(options.threads, options.seed);
-    RecordOutput output(options.output, from);
-    const std::vector<BackendKind> kinds = chosen_backends(options.backends);
-    std::vector<std::string> names = options.scenes;
-    const bool all = names.empty();
-    if (all)
-        names = {"santa-ring-1", "santa-ring-2", "santa-ring-3", "santa-ring-4", "santa-ring-5",
-                 "santa-ring-6", "santa-ring-7", "santa-ring-8", "fishes"};
-    const auto own = std::find_if(kinds.begin(), kinds.end(), [](const BackendKind& k) { return k.name == "cinch"; });
-    const std::size_t fewer[] = {12, 6}; // of the fishes: how time grows with bodies
-    const std::size_t wanted = names.size() + (all && own != kinds.end() ? std::size(fewer) : 0);
-    std::vector<SceneResult> results;
-    auto add = [&](SceneResult&& result) {
-        if (!result.backends.empty())
-            results.push_back(std::move(result));
-    };
-    catch_interrupt();
-    try {
-        for (const std::string& name : names) {
-            throw_if_interrupted();
-            CollideScene scene = load(name, options);
-            add(run(scene, kinds, options));
-            if (name != "fishes" || !all || own == kinds.end())
-                continue;
-            for (const std::size_t bodies : fewer) {
-                throw_if_interrupted();
-                scene.name = fmt::format("fishes/{}", bodies);
-                scene.bodies.resize(bodies);
-                add(run(scene, {*own}, options));
-            }
+// The same scene again, with fewer bodies, is not simulated again.
+class Scenes {
+public:
+    CollideScene& get(const SceneCell& cell, const CollideOptions& options)
+    {
+        if (!scene_ || loaded_ != cell.scene || (cell.bodies == 0 && scene_->bodies.size() != whole_)) {
+            scene_.reset();
+            scene_.emplace(load(cell.scene, options));
+            loaded_ = cell.scene;
+            whole_ = scene_->bodies.size();
         }
-    } catch (const Interrupted&) { // what was measured is kept
-        if (results.empty())
-            throw;
+        if (cell.bodies)
+            scene_->bodies.resize(cell.bodies);
+        scene_->name = cell.name();
+        return *scene_;
     }
+
+private:
+    std::optional<CollideScene> scene_;
+    std::string loaded_;
+    std::size_t whole_ = 0;
+};
+
+Json plan_of(const CollideOptions& options, const std::vector<SceneCell>& cells, const std::vector<BackendKind>& kinds)
+{
+    Json names = Json::array(), backends = Json::array(), sums = Json::object();
+    for (const SceneCell& cell : cells)
+        names.push_back(cell.name());
+    for (const BackendKind& kind : kinds)
+        backends.push_back(kind.name);
+    for (const SceneCell& cell : cells)
+        if (std::filesystem::is_regular_file(cell.scene))
+            sums[cell.scene] = checksum(read_bytes(cell.scene));
+    return {{"scenes", names},           {"backends", backends},        {"frames", options.frames},
+            {"rounds", options.rounds},  {"threads", options.threads},  {"cold", options.cold},
+            {"seed", options.seed},      {"checksums", sums}};
+}
+
+std::vector<SceneResult> results_of(const Merged& all)
+{
+    std::vector<SceneResult> results;
+    for (const Rows& cell : all.cells)
+        for (const Json& row : cell)
+            results.push_back(scene_result_of(row));
+    return results;
+}
+
+// Of this project's own.
+bool differ(const std::vector<SceneResult>& results)
+{
+    for (const SceneResult& r : results)
+        for (const Measured& m : r.backends)
+            if (m.differing > 0 && m.counts)
+                return true;
+    return false;
+}
+
+Completeness completeness_of(const std::vector<SceneResult>& results, std::size_t wanted)
+{
     const auto whole = static_cast<std::size_t>(
         std::count_if(results.begin(), results.end(), [](const SceneResult& r) { return r.is_complete(); }));
     Completeness completeness{0, 0, whole == wanted,
@@ -160,39 +162,76 @@ int collide(const CollideOptions& options)
             completeness.frames_done += m.frames;
             completeness.frames += m.frames_wanted;
         }
-    std::vector<Json> records;
-    bool different = false;
-    for (const SceneResult& r : results)
-        for (const Measured& m : r.backends) {
-            records.push_back(record(r, m, options.cold));
-            different |= m.differing > 0 && m.counts; // of this project's own
-        }
-    for (const Figure& f : figures_of(results, options.cold))
-        records.push_back({{"experiment", "collide"},
-                           {"figure", f.what},
-                           {"measured", f.measured},
-                           {"target", f.target},
-                           {"reached", f.reached}});
-    for (const Slope& s : slopes_of(results))
-        records.push_back({{"experiment", "collide"}, {"slope", s.what}, {"exponent", s.exponent}});
+    return completeness;
+}
+
+int print_results(const Merged& all, const OutputOptions& options, const Provenance& from)
+{
+    const bool cold = all.campaign.plan.at("cold");
+    const std::vector<SceneResult> results = results_of(all);
+    const Completeness completeness = completeness_of(results, all.cells.size());
+    RecordOutput output(options, from);
     output.set(completeness);
-    output.add_all(records);
+    for (const SceneResult& r : results)
+        for (const Measured& m : r.backends)
+            output.add(record(r, m, cold));
+    for (const Figure& f : figures_of(results, cold))
+        output.add({{"experiment", "collide"},
+                    {"figure", f.what},
+                    {"measured", f.measured},
+                    {"target", f.target},
+                    {"reached", f.reached}});
+    for (const Slope& s : slopes_of(results))
+        output.add({{"experiment", "collide"}, {"slope", s.what}, {"exponent", s.exponent}});
     output.finish();
-    if (!options.output.records_only()) {
+    if (!options.records_only()) {
         print_note(completeness);
-        print_tables(results, options.cold);
+        print_tables(results, cold);
         fmt::print("{}\n", describe(from));
     }
-    if (different) {
-        fmt::print(stderr, "cinch: a check failed: backends of this project found different pairs\n");
-        return 1;
-    }
-    if (!completeness.complete) {
-        std::fflush(stdout);
-        fmt::print(stderr, "cinch: {}\n", completeness.note);
-        return 130;
-    }
-    return 0;
+    if (!differ(results))
+        return 0;
+    fmt::print(stderr, "cinch: a check failed: backends of this project found different pairs\n");
+    return 1;
+}
+
+} // namespace
+
+int print_collide(const Merged& all, const OutputOptions& options)
+{
+    Provenance from = provenance_of(all.campaign);
+    from.seed = all.campaign.plan.at("seed");
+    from.threads = all.campaign.plan.at("threads");
+    return print_results(all, options, from);
+}
+
+int collide(const CollideOptions& options)
+{
+    const Provenance here = provenance(options.threads, options.seed);
+    RecordOutput(options.output, here); // what cannot be written is said before measuring
+    const std::vector<BackendKind> kinds = chosen_backends(options.backends);
+    const std::vector<SceneCell> cells = cells_of(options, kinds);
+    Scenes scenes;
+    catch_interrupt();
+    const CampaignRun run = run_campaign(
+        campaign_of("collide", plan_of(options, cells, kinds), cells.size()), options.shards, [&](std::size_t cell) {
+            const CollideScene& scene = scenes.get(cells[cell], options);
+            std::vector<BackendKind> own = kinds;
+            if (cells[cell].own_alone)
+                std::erase_if(own, [](const BackendKind& k) { return k.name != "cinch"; });
+            const SceneResult result = cinch::run(scene, own, options);
+            if (result.backends.empty())
+                throw Interrupted{};
+            if (!result.is_complete())
+                throw CutShort{{}, Rows{to_json(result)}};
+            return Rows{to_json(result)};
+        });
+    return end_run(run, options.shards, differ(results_of(run.all)) ? 1 : 0, [&] {
+        if (options.shards.folder.empty())
+            print_results(run.all, options.output, here);
+        else
+            print_collide(run.all, options.output);
+    });
 }
 
 } // namespace cinch

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/report/record_output.hpp"
+#include "experiments/records/run_campaign.hpp"
 
 namespace cinch {
 
@@ -16,11 +16,15 @@ struct CollideOptions {
     int threads = 1;
     bool cold = false;
     std::uint64_t seed = 0;
+    ShardOptions shards;
     OutputOptions output;
 };
 
 /// The paper's Tables 2 to 4 and Fig. 7 on this machine: this project's collision detection against its baselines and
 /// peers. Returns the exit status: 1 if a backend of this project found other pairs than the others.
 int collide(const CollideOptions& options);
+
+/// What `collide` prints of all scenes, however they came about. Returns its exit status.
+int print_collide(const Merged& all, const OutputOptions& options);
 
 } // namespace cinch

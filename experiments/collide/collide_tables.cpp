@@ -14,7 +14,7 @@
 namespace cinch {
 namespace {
 
-using Rows = std::vector<std::vector<std::string>>;
+using Lines = std::vector<std::vector<std::string>>;
 
 std::string ms(double x)
 {
@@ -45,7 +45,7 @@ std::string frames_of(const Measured& m)
 
 void print_scenes(const std::vector<SceneResult>& results)
 {
-    Rows rows;
+    Lines rows;
     for (const SceneResult& r : results)
         rows.push_back({r.scene, grouped(r.bodies), grouped(r.vertices), grouped(r.nodes),
                         fmt::format("{:.0f}", r.backends[0].pairs),
@@ -58,7 +58,7 @@ void print_scenes(const std::vector<SceneResult>& results)
 
 void print_table_3(const std::vector<SceneResult>& results)
 {
-    Rows rows;
+    Lines rows;
     for (const SceneResult& r : results) {
         const Measured *full = r.of("refit-1"), *hash = r.of("hash");
         if (!full && !hash)
@@ -87,7 +87,7 @@ void print_table_3(const std::vector<SceneResult>& results)
 
 void print_table_4(const std::vector<SceneResult>& results)
 {
-    Rows rows;
+    Lines rows;
     for (const SceneResult& r : results) {
         const Measured *full = r.of("refit-1"), *aabb = r.of("eq12-aabb"), *obb = r.of("eq12-obb-14");
         if (!aabb && !obb)
@@ -116,7 +116,7 @@ void print_table_4(const std::vector<SceneResult>& results)
 
 void print_backends(const SceneResult& r)
 {
-    Rows rows;
+    Lines rows;
     for (const Measured& m : r.backends)
         rows.push_back(
             {m.frames == m.frames_wanted ? m.backend : fmt::format("{} ({} frames)", m.backend, frames_of(m)),
@@ -132,7 +132,7 @@ void print_backends(const SceneResult& r)
 
 void print_counts(const std::vector<SceneResult>& results)
 {
-    Rows rows;
+    Lines rows;
     for (const SceneResult& r : results) {
         const Measured& m = r.backends[0];
         if (!m.counts)

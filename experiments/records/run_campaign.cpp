@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "cinch/surface.hpp"
-#include "experiments/report/interrupt.hpp"
 #include "experiments/report/progress.hpp"
 
 namespace cinch {
@@ -50,11 +49,17 @@ CampaignRun run_campaign(const Campaign& campaign, const ShardOptions& options,
             if (file && file->cells().contains(cell))
                 continue;
             throw_if_interrupted();
-            run.all.cells[cell] = compute(cell);
+            try {
+                run.all.cells[cell] = compute(cell);
+            } catch (const CutShort& part) {
+                run.all.cells[cell] = part.rows;
+                throw;
+            }
             if (file)
                 file->add(cell, run.all.cells[cell]);
             progress.done(++run.done - before);
         }
+    } catch (const CutShort&) {
     } catch (const Interrupted&) {
         if (run.done == 0)
             throw;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "experiments/records/row_folder.hpp"
+#include "experiments/report/interrupt.hpp"
 #include "experiments/report/record_output.hpp"
 
 namespace cinch {
@@ -21,6 +22,11 @@ Campaign campaign_of(std::string command, nlohmann::ordered_json plan, std::size
 /// Where merged rows come from, as records say it: no machine, as rows are the same on all.
 Provenance provenance_of(const Campaign& campaign);
 
+/// Thrown by what computes a cell where an interrupt left a part of it that is worth printing. It is not kept.
+struct CutShort : Interrupted {
+    Rows rows;
+};
+
 /// What a run computed or found in its folder. It ends before all that it wanted only by an interrupt.
 struct CampaignRun {
     Merged all; ///< cells that are not there have no rows
@@ -33,7 +39,7 @@ struct CampaignRun {
 };
 
 /// Computes the cells that are not in the folder yet, in their order, with progress. Throws Interrupted if there is no
-/// cell at the end.
+/// cell at the end, nor a part of one.
 CampaignRun run_campaign(const Campaign& campaign, const ShardOptions& options,
                          const std::function<Rows(std::size_t cell)>& compute);
 
