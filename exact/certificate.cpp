@@ -121,34 +121,29 @@ std::string hash_of_method(const Claim& claim, std::string_view shape)
     return hash.hex();
 }
 
+void add_frame(double time_s, std::span<const AffineMap> maps, Sha256& hash)
+{
+    hash.add(time_s);
+    for (const AffineMap& map : maps)
+        hash.add(std::span<const double>(&map.m[0][0], 12));
+}
+
 } // namespace
 
 struct CertificateWriter::Parts {
-    Line line;
-    std::size_t bvs, kdop;
-    std::size_t frames_claimed, frames = 0;
-    bool has_lambda;
-    std::size_t proven = 0, infinite = 0, violated = 0;
+    Claim claim;
+    LineSink line;
+    std::size_t supports, frames = 0;
+    BoundCounts counts;
     Sha256 transforms;
 };
 
-CertificateWriter::CertificateWriter(const DeformableSurface& surface, const Bvh& bvh, const Claim& claim,
-                                     LineSink sink)
-    : parts_(new Parts{Line(std::move(sink)),
-                       bvh.bvs.size(),
-                       static_cast<std::size_t>(claim.kdop),
-                       claim.frames,
-                       0,
-                       claim.methods.within(box_methods) && claim.shape == RestShape::aabb,
-                       0,
-                       0,
-                       0,
-                       {}})
+void write_surface(const DeformableSurface& surface, const Bvh& bvh, const Claim& claim, const LineSink& sink)
 {
-    Line& line = parts_->line;
+    Line line(sink);
     const std::string_view shape = claim.shape == RestShape::aabb ? "aabb" : "obb";
     line.raw("{\"certificate\":\"").raw(format).raw("\",\"method\":\"").raw(name_of(claim.methods));
-    line.raw("\",\"rest_shape\":\"").raw(shape).raw("\",\"kdop\":").integer(parts_->kdop);
+    line.raw("\",\"rest_shape\":\"").raw(shape).raw("\",\"kdop\":").integer(static_cast<std::size_t>(claim.kdop));
     line.raw(",\"vertices\":").integer(surface.mesh.vertices.size());
     line.raw(",\"triangles\":").integer(surface.mesh.triangles.size());
     line.raw(",\"nodes\":").integer(surface.weights.node_count).raw(",\"bvs\":").integer(bvh.bvs.size());
@@ -177,27 +172,23 @@ CertificateWriter::CertificateWriter(const DeformableSurface& surface, const Bvh
     }
 }
 
-CertificateWriter::~CertificateWriter() = default;
-
-void CertificateWriter::frame(double time_s, std::span<const AffineMap> maps, std::span<const double> supports,
-                              const FrameVerdict& verdict)
+BoundCounts write_frame(const Claim& claim, std::size_t frame, double time_s, std::span<const AffineMap> maps,
+                        std::span<const double> supports, const FrameVerdict& verdict, const LineSink& sink)
 {
-    Parts& p = *parts_;
-    if (p.frames == p.frames_claimed || supports.size() != p.bvs * p.kdop || verdict.failed.size() != supports.size())
-        throw std::invalid_argument("CertificateWriter::frame: not a frame of what is claimed");
-    p.transforms.add(time_s);
-    for (const AffineMap& map : maps)
-        p.transforms.add(std::span<const double>(&map.m[0][0], 12));
-    Line& line = p.line;
-    line.raw("{\"frame\":").integer(p.frames).raw(",\"time\":").number(time_s).raw(",\"maps\":");
+    const auto k = static_cast<std::size_t>(claim.kdop);
+    const bool has_lambda = claim.methods.within(box_methods) && claim.shape == RestShape::aabb;
+    if (frame >= claim.frames || supports.size() % k != 0 || verdict.failed.size() != supports.size())
+        throw std::invalid_argument("write_frame: not a frame of what is claimed");
+    Line line(sink);
+    line.raw("{\"frame\":").integer(frame).raw(",\"time\":").number(time_s).raw(",\"maps\":");
     line.array(maps, [&](const AffineMap& map) { line.numbers({&map.m[0][0], 12}); }).raw("}").end();
-    for (std::size_t i = 0; i < p.bvs; ++i) {
-        line.raw("{\"frame\":").integer(p.frames).raw(",\"bv\":").integer(i);
-        line.raw(",\"bounds\":").numbers(supports.subspan(i * p.kdop, p.kdop));
-        if (p.has_lambda) {
+    for (std::size_t i = 0; i < supports.size() / k; ++i) {
+        line.raw("{\"frame\":").integer(frame).raw(",\"bv\":").integer(i);
+        line.raw(",\"bounds\":").numbers(supports.subspan(i * k, k));
+        if (has_lambda) {
             line.raw(",\"lambda\":[");
-            for (std::size_t slot = i * p.kdop; slot < (i + 1) * p.kdop; ++slot) {
-                if (slot > i * p.kdop)
+            for (std::size_t slot = i * k; slot < (i + 1) * k; ++slot) {
+                if (slot > i * k)
                     line.raw(",");
                 const auto fraction = verdict.exact_lambda.find(slot);
                 if (fraction == verdict.exact_lambda.end())
@@ -209,19 +200,58 @@ void CertificateWriter::frame(double time_s, std::span<const AffineMap> maps, st
         }
         line.raw("}").end();
     }
+    BoundCounts counts;
     for (std::size_t slot = 0; slot < supports.size(); ++slot)
-        ++(verdict.failed[slot] ? p.violated : std::isinf(supports[slot]) ? p.infinite : p.proven);
+        ++(verdict.failed[slot] ? counts.violated : std::isinf(supports[slot]) ? counts.infinite : counts.proven);
+    return counts;
+}
+
+void write_end(std::size_t frames, const BoundCounts& counts, const std::string& transforms, const LineSink& sink)
+{
+    Line line(sink);
+    line.raw("{\"end\":\"").raw(format).raw("\",\"frames\":").integer(frames);
+    line.raw(",\"proven\":").integer(counts.proven).raw(",\"infinite\":").integer(counts.infinite);
+    line.raw(",\"violated\":").integer(counts.violated);
+    line.raw(",\"sha256\":{\"transforms\":\"").raw(transforms).raw("\"}}").end();
+}
+
+std::string hash_of_transforms(const Clip& clip)
+{
+    Sha256 hash;
+    for (std::size_t f = 0; f < clip.frame_count(); ++f)
+        add_frame(clip.time_s(f), clip.frame(f), hash);
+    return hash.hex();
+}
+
+CertificateWriter::CertificateWriter(const DeformableSurface& surface, const Bvh& bvh, const Claim& claim,
+                                     LineSink line)
+    : parts_(new Parts{claim, std::move(line), bvh.bvs.size() * static_cast<std::size_t>(claim.kdop), 0, {}, {}})
+{
+    write_surface(surface, bvh, claim, parts_->line);
+}
+
+CertificateWriter::~CertificateWriter() = default;
+
+void CertificateWriter::frame(double time_s, std::span<const AffineMap> maps, std::span<const double> supports,
+                              const FrameVerdict& verdict)
+{
+    Parts& p = *parts_;
+    if (supports.size() != p.supports)
+        throw std::invalid_argument("CertificateWriter::frame: not a frame of what is claimed");
+    const BoundCounts counts = write_frame(p.claim, p.frames, time_s, maps, supports, verdict, p.line);
+    add_frame(time_s, maps, p.transforms);
+    p.counts.proven += counts.proven;
+    p.counts.infinite += counts.infinite;
+    p.counts.violated += counts.violated;
     ++p.frames;
 }
 
 void CertificateWriter::end()
 {
     Parts& p = *parts_;
-    if (p.frames != p.frames_claimed)
+    if (p.frames != p.claim.frames)
         throw std::logic_error("CertificateWriter::end: frames are missing");
-    p.line.raw("{\"end\":\"").raw(format).raw("\",\"frames\":").integer(p.frames).raw(",\"proven\":").integer(p.proven);
-    p.line.raw(",\"infinite\":").integer(p.infinite).raw(",\"violated\":").integer(p.violated);
-    p.line.raw(",\"sha256\":{\"transforms\":\"").raw(p.transforms.hex()).raw("\"}}").end();
+    write_end(p.frames, p.counts, p.transforms.hex(), p.line);
 }
 
 } // namespace cinch::exact

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "cinch/deform.hpp"
 #include "exact/verifier.hpp"
 
 namespace cinch::exact {
@@ -23,6 +24,11 @@ struct Claim {
     std::string clip;                 ///< name of the motion
     std::size_t frames = 0;           ///< how many will follow
     std::vector<std::string> missing; ///< parts of the input that the surface lacks; any make the certificate partial
+};
+
+/// How many bounds of a certificate's frames are what.
+struct BoundCounts {
+    std::size_t proven = 0, infinite = 0, violated = 0;
 };
 
 /// Writes a certificate: JSON Lines that carry everything needed to prove the bounds again without this program.
@@ -61,5 +67,15 @@ private:
     struct Parts;
     std::unique_ptr<Parts> parts_;
 };
+
+/// The same in parts, which may be written by different processes: the lines of the surface, those of each frame, and
+/// the last one make a certificate when they stand one after the other.
+void write_surface(const DeformableSurface& surface, const Bvh& bvh, const Claim& claim, const LineSink& line);
+/// A frame of the claim as in CertificateWriter::frame, by its number.
+BoundCounts write_frame(const Claim& claim, std::size_t frame, double time_s, std::span<const AffineMap> maps,
+                        std::span<const double> supports, const FrameVerdict& verdict, const LineSink& line);
+/// `transforms` is hash_of_transforms of all frames.
+void write_end(std::size_t frames, const BoundCounts& counts, const std::string& transforms, const LineSink& line);
+std::string hash_of_transforms(const Clip& clip);
 
 } // namespace cinch::exact

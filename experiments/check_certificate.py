@@ -31,6 +31,8 @@ Exit status: 0 accepted, 1 rejected or not understood, in one line, 2 wrong usag
 import argparse
 import contextlib
 import gzip
+import io
+import os
 import sys
 import zlib
 
@@ -41,9 +43,36 @@ from certificate.records import Records  # noqa: E402
 from certificate.values import Rejected, plain, shown  # noqa: E402
 
 
+class Parts(io.RawIOBase):
+    """The bytes of the files of a folder, one after the other; those of a certificate are in order by their names."""
+
+    def __init__(self, folder):
+        self.left = sorted(os.path.join(folder, name) for name in os.listdir(folder) if name.endswith(".jsonl.gz"))
+        if not self.left:
+            raise Rejected("no part of a certificate (.jsonl.gz) is in this folder")
+        self.file = None
+
+    def readable(self):
+        return True
+
+    def readinto(self, buffer):
+        while True:
+            if self.file is None:
+                if not self.left:
+                    return 0
+                self.file = gzip.open(self.left.pop(0))
+            if count := self.file.readinto(buffer):
+                return count
+            self.file.close()
+            self.file = None
+
+
 @contextlib.contextmanager
 def opened(name):
-    """The bytes of a file, compressed or not."""
+    """The bytes of a file, compressed or not, or of a folder of parts."""
+    if os.path.isdir(name):
+        yield io.BufferedReader(Parts(name), 1 << 20)
+        return
     with open(name, "rb") as file:
         if file.peek(2)[:2] == b"\x1f\x8b":
             with gzip.GzipFile(fileobj=file) as unpacked:
@@ -75,7 +104,7 @@ def arguments(given):
     title = __doc__.strip().partition("\n")[0]
     parser = argparse.ArgumentParser(usage=usage.partition(" ")[2], description=f"{title}\n\n{description}",
                                      formatter_class=argparse.RawDescriptionHelpFormatter, allow_abbrev=False)
-    parser.add_argument("certificate", metavar="CERTIFICATE", help="a file, compressed or not")
+    parser.add_argument("certificate", metavar="CERTIFICATE", help="a file, compressed or not, or a folder of parts")
     parser.add_argument("--input", metavar="MESH", help="the mesh file that it must be of: .obj or .off")
     parser.add_argument("--weights", metavar="WEIGHTS", help="and the weights: NAME.weights.txt")
     parser.add_argument("--transforms", metavar="TRANSFORMS", help="and the clips: NAME.frames.txt")

@@ -42,7 +42,8 @@ void add_verify(CLI::App& app, VerifyOptions& o)
     add_shards(command, o.shards);
     add_output(command, o.output);
     option("--certificate", o.certificate,
-           "write a proof of every bound, for experiments/check_certificate.py; compressed if it ends in .gz")
+           "write a proof of every bound, for experiments/check_certificate.py; compressed if it ends in .gz; with --out "
+           "a folder in DIR, of a file per frame, which 'cinch merge DIR' ends")
         ->option_text("FILE");
     option("--vipr", o.vipr,
            "write single bounds of the last frame (first BV of each level) as VIPR files, for viprchk")
@@ -66,7 +67,7 @@ void add_verify(CLI::App& app, VerifyOptions& o)
   cinch verify robot.glb --clip Robot_Dance  a skinned character
   cinch verify rest.off --weights w.txt --transforms t.txt --json
   cinch verify fish --certificate fish.jsonl.gz
-  cinch verify robot.glb --out proof --shard 0/8   an eighth of its frames
+  cinch verify robot.glb --out rows --certificate proof --shard 0/8
   cinch verify santa-ring-3 --update lazy    the bounds that collision reads
 
 Text form of weights and transforms ('#' starts a comment):

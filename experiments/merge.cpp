@@ -26,7 +26,7 @@ int merge_shards(const MergeOptions& options)
         return print_collide(all, options.output);
 #ifdef CINCH_EXACT
     if (all.campaign.command == "verify")
-        return print_verify(all, options.output);
+        return print_verify(all, options.output, options.folder);
     if (all.campaign.command == "tightness")
         return print_tightness(all, options.output);
     if (all.campaign.command == "fuzz")

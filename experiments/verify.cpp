@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -15,6 +16,7 @@
 #include "cinch/refit.hpp"
 #include "cinch/surface.hpp"
 #include "exact/certificate.hpp"
+#include "experiments/certificate_parts.hpp"
 #include "experiments/records/run_campaign.hpp"
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/line_file.hpp"
@@ -153,9 +155,23 @@ struct PreparedInput {
     Ladder ladder;
 };
 
+exact::Claim claim_of(const Input& input, const VerifyOptions& options)
+{
+    return {.methods = options.methods,
+            .kdop = options.kdop,
+            .shape = options.rest_shape,
+            .clip = input.clip.name,
+            .frames = input.clip.frame_count(),
+            .missing = input.missing};
+}
+
+// Where the proof of a frame goes.
+using FrameSink = std::function<void(double time_s, std::span<const AffineMap> maps, std::span<const double> supports,
+                                     const exact::FrameVerdict& verdict)>;
+
 // Refits and proves every BV of one body in one frame; `supports` are its bounds.
 VerifyTotals verify_frame(PreparedInput& prepared, const Input& input, const VerifyOptions& options, std::size_t f,
-                          exact::CertificateWriter* proof, std::vector<double>& supports)
+                          const FrameSink& proof, std::vector<double>& supports)
 {
     const Bvh& bvh = prepared.bvh;
     VerifyTotals totals;
@@ -170,7 +186,7 @@ VerifyTotals verify_frame(PreparedInput& prepared, const Input& input, const Ver
     }
     prepared.ladder.check(maps, supports, totals.ladder);
     if (proof)
-        proof->frame(input.clip.time_s(f), maps, supports, verdict);
+        proof(input.clip.time_s(f), maps, supports, verdict);
     add_levels(bvh, totals);
     add(bvh, verdict, options.kdop, {}, totals);
     totals.infinite = static_cast<std::size_t>(
@@ -194,13 +210,7 @@ void verify_body(const std::shared_ptr<const Inputs>& inputs, const Input& input
     const std::unique_ptr<PreparedInput> prepared = prepare(inputs, input, options);
     std::optional<exact::CertificateWriter> proof;
     if (certificate)
-        proof.emplace(input.surface, prepared->bvh,
-                      exact::Claim{.methods = options.methods,
-                                   .kdop = options.kdop,
-                                   .shape = options.rest_shape,
-                                   .clip = input.clip.name,
-                                   .frames = input.clip.frame_count(),
-                                   .missing = input.missing},
+        proof.emplace(input.surface, prepared->bvh, claim_of(input, options),
                       [=](std::string_view text) {
                           throw_if_interrupted(); // then none is written
                           certificate->line(text);
@@ -210,7 +220,9 @@ void verify_body(const std::shared_ptr<const Inputs>& inputs, const Input& input
     std::vector<double> supports;
     for (std::size_t f = 0; f < input.clip.frame_count(); ++f) {
         throw_if_interrupted();
-        const VerifyTotals frame = verify_frame(*prepared, input, options, f, proof ? &*proof : nullptr, supports);
+        const VerifyTotals frame = verify_frame(
+            *prepared, input, options, f,
+            proof ? FrameSink([&](auto&&... of_frame) { proof->frame(of_frame...); }) : FrameSink(), supports);
         add_row(frame_row(0, f, frame), totals);
         progress.done(totals.frames);
     }
@@ -232,21 +244,36 @@ int verify_in_cells(const std::shared_ptr<const Inputs>& inputs, const VerifyOpt
     std::unique_ptr<PreparedInput> prepared;
     std::optional<std::size_t> prepared_body;
     std::vector<double> supports;
+    std::optional<CertificateParts> parts;
+    if (!options.certificate.empty())
+        parts.emplace(std::filesystem::path(options.shards.folder) / options.certificate);
     const CampaignRun run = run_campaign(
         campaign_of("verify", verify_plan(*inputs, options), cells.size()), options.shards, [&](std::size_t cell) {
             const auto [body, f] = cells[cell];
             const Input& input = inputs->bodies[body];
             const auto start = std::chrono::steady_clock::now();
-            if (prepared_body != body)
+            if (prepared_body != body) {
                 prepared = prepare(inputs, input, options);
+                if (parts)
+                    parts->write_surface(input.surface, prepared->bvh, claim_of(input, options));
+            }
             prepared_body = body;
-            VerifyTotals frame = verify_frame(*prepared, input, options, f, nullptr, supports);
+            exact::BoundCounts counts;
+            const FrameSink proof = [&](auto&&... of_frame) {
+                counts = parts->write_frame(claim_of(input, options), f, of_frame...);
+            };
+            VerifyTotals frame =
+                verify_frame(*prepared, input, options, f, parts ? proof : FrameSink(), supports);
             if (f + 1 == input.clip.frame_count())
                 explain_last_frame(input, prepared->bvh, own, f, supports, frame);
             frame.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-            return Rows{frame_row(body, f, frame)};
+            nlohmann::ordered_json row = frame_row(body, f, frame);
+            if (parts)
+                row["certificate"] = {counts.proven, counts.infinite, counts.violated};
+            return Rows{std::move(row)};
         });
-    return end_run(run, options.shards, verdict_of(run.all), [&] { print_verify(run.all, options.output); });
+    return end_run(run, options.shards, verdict_of(run.all),
+                   [&] { print_verify(run.all, options.output, options.shards.folder); });
 }
 
 } // namespace
@@ -265,7 +292,7 @@ int verify(const VerifyOptions& given)
     const Provenance from = provenance(threads, options.input.seed);
     RecordOutput output(options.output, from);
     std::optional<LineFile> certificate;
-    if (!options.certificate.empty())
+    if (!options.certificate.empty() && options.shards.folder.empty())
         certificate.emplace(options.certificate);
     const auto shared = std::make_shared<const Inputs>(load_inputs(options.input));
     const Inputs& inputs = *shared;
@@ -273,10 +300,12 @@ int verify(const VerifyOptions& given)
     if (inputs.bodies.size() > 1 && (!options.certificate.empty() || !options.vipr.empty()))
         throw InputError("--certificate and --vipr are of one body; --body chooses it");
     if (!options.shards.folder.empty()) {
-        if (options.update != VerifiedUpdate::refit || options.remember || !options.certificate.empty() ||
-            !options.vipr.empty())
+        if (options.update != VerifiedUpdate::refit || options.remember || !options.vipr.empty())
             throw InputError("--out goes neither with --update and --remember, where frames depend on those before "
-                             "them, nor with --certificate and --vipr");
+                             "them, nor with --vipr");
+        if (options.certificate.find('/') != std::string::npos || options.certificate.starts_with('.'))
+            throw InputError(fmt::format("--certificate {}: with --out it names a folder in that one",
+                                         options.certificate));
         catch_interrupt();
         return verify_in_cells(shared, options);
     }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "experiments/certificate_parts.hpp"
 #include "experiments/input_checksum.hpp"
 #include "experiments/records/run_campaign.hpp"
 #include "experiments/verify_report.hpp"
@@ -73,6 +74,8 @@ Json verify_plan(const Inputs& inputs, const VerifyOptions& o)
             {"leaf", o.leaf},
             {"volume", o.volume},
             {"sabotage", static_cast<int>(o.sabotage)},
+            {"certificate", o.certificate},
+            {"transforms", o.certificate.empty() ? "" : exact::hash_of_transforms(inputs.bodies[0].clip)},
             {"vertices", input.vertices},
             {"triangles", input.triangles},
             {"nodes", input.nodes},
@@ -197,7 +200,22 @@ void add_row(const Json& row, VerifyTotals& totals)
     ++totals.frames;
 }
 
-int print_verify(const Merged& all, const OutputOptions& output_options)
+// The end of a certificate whose frames are all there.
+void end_certificate(const Merged& all, const std::string& folder)
+{
+    const Json& plan = all.campaign.plan;
+    exact::BoundCounts counts;
+    for (const Rows& cell : all.cells)
+        for (const Json& row : cell) {
+            counts.proven += row.at("certificate")[0].get<std::size_t>();
+            counts.infinite += row.at("certificate")[1].get<std::size_t>();
+            counts.violated += row.at("certificate")[2].get<std::size_t>();
+        }
+    CertificateParts(std::filesystem::path(folder) / plan.at("certificate").get<std::string>())
+        .write_end(all.cells.size(), counts, plan.at("transforms"));
+}
+
+int print_verify(const Merged& all, const OutputOptions& output_options, const std::string& folder)
 {
     const Json& plan = all.campaign.plan;
     const VerifiedInput input = input_of_plan(plan);
@@ -213,6 +231,8 @@ int print_verify(const Merged& all, const OutputOptions& output_options)
     output.finish();
     if (!output_options.records_only())
         print_table(input, options, totals, from);
+    if (completeness_of(totals).complete && !plan.at("certificate").get<std::string>().empty())
+        end_certificate(all, folder);
     return verdict_of(totals);
 }
 

@@ -27,8 +27,9 @@ nlohmann::ordered_json frame_row(std::size_t body, std::size_t frame, const Veri
 /// Adds a row: those of a body in the order of frames, one body after the other.
 void add_row(const nlohmann::ordered_json& row, VerifyTotals& totals);
 
-/// What `verify` prints of a whole verification, however its rows came about. Returns its exit status.
-int print_verify(const Merged& all, const OutputOptions& options);
+/// What `verify` prints of a whole verification, however its rows came about; a certificate in parts, in the folder,
+/// gets its end. Returns the exit status.
+int print_verify(const Merged& all, const OutputOptions& options, const std::string& folder);
 /// That status alone.
 int verdict_of(const Merged& all);
 

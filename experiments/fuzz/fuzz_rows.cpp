@@ -33,12 +33,12 @@ Json to_json(const FuzzPlan& p)
             {"family", p.family}, {"corpus", p.corpus}, {"sabotage", name_of(p.defect)}};
 }
 
-FuzzPlan fuzz_plan_of(const Json& json)
+FuzzPlan fuzz_plan_of(const Json& from)
 {
-    FuzzPlan plan{json.at("seed"),   json.at("cases"),  json.at("cases_per_cell"),
-                  json.at("family"), json.at("corpus"), Defect::none};
+    FuzzPlan plan{from.at("seed"),   from.at("cases"),  from.at("cases_per_cell"),
+                  from.at("family"), from.at("corpus"), Defect::none};
     for (const auto& [name, defect] : defects)
-        if (json.at("sabotage") == name)
+        if (from.at("sabotage") == name)
             plan.defect = defect;
     return plan;
 }
