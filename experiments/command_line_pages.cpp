@@ -102,6 +102,11 @@ void add_reproduce(CLI::App& app, ReproduceOptions& o)
         "--quick", o.quick,
         wrapped("fewer scenes, frames and repetitions: under three minutes on two cores, instead of under 45"));
     command.add_option("--out", o.out, wrapped("folder for the results and report.html [results]"))->option_text("DIR");
+    command
+        .add_option("--shard", o.shard,
+                    wrapped("every N-th experiment, from the I-th on, and no page, which 'cinch merge DIR' writes; "
+                            "slurm: that of the array job's task"))
+        ->option_text("I/N");
     command.add_option("--seed", o.seed, wrapped("seed of everything random [0]"))->option_text("N");
     command.footer(R"(Runs the experiments that are not in DIR yet, for this commit and these options,
 each by a command of this program, whose JSON Lines become DIR/NAME.jsonl. Then
@@ -111,6 +116,7 @@ around. Stopped or killed, the same command continues.
 Examples:
   cinch reproduce --quick --out quick    a first look
   cinch reproduce                        everything
+  cinch reproduce --shard 2/5            a fifth of it, on one of five machines
   cinch report results                   the page again
 
 Exit status: 0 done, 1 a check of an experiment failed, 2 bad usage, an

@@ -6,6 +6,7 @@
 #include "cinch/surface.hpp"
 #include "experiments/collide/collide.hpp"
 #include "experiments/records/row_folder.hpp"
+#include "experiments/report/reproduce.hpp"
 #include "experiments/study/study.hpp"
 #ifdef CINCH_EXACT
 #include "experiments/fuzz/fuzz_rows.hpp"
@@ -17,6 +18,8 @@ namespace cinch {
 
 int merge_shards(const MergeOptions& options)
 {
+    if (holds_results(options.folder))
+        return merge_results(options.folder);
     const Merged all = merge(options.folder);
     if (all.campaign.command == "study") {
         print_study(all, options.output);

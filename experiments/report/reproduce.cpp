@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "cinch/surface.hpp"
+#include "experiments/records/shard.hpp"
 #include "experiments/report/chart.hpp"
 #include "experiments/report/child.hpp"
 #include "experiments/report/file_lock.hpp"
@@ -20,6 +21,7 @@
 #include "experiments/report/results.hpp"
 #include "experiments/report/stages.hpp"
 #include "experiments/report/whole_file.hpp"
+#include "toolkit/simulate/frame_file.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 
 namespace cinch {
@@ -74,7 +76,13 @@ Outcome run(const Stage& stage, const ReproduceOptions& options)
     const fs::path file = fs::path(options.out) / (stage.name + ".jsonl"),
                    part = fs::path(options.out) / (stage.name + ".part");
     const auto start = std::chrono::steady_clock::now();
-    const int status = run_child(arguments_of(stage, options.quick, options.seed), part);
+    std::vector<std::string> arguments = arguments_of(stage, options.quick, options.seed);
+    const fs::path cells = fs::path(options.out) / fmt::format("{}-{}-{:016x}.cells", stage.name,
+                                                               provenance(1, 0).commit,
+                                                               checksum(command_of(arguments)));
+    if (stage.runs_in_cells())
+        arguments.insert(arguments.end(), {"--out", cells.string()});
+    const int status = run_child(arguments, part);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     std::error_code ignored;
     if (interrupted() || status == 130) {
@@ -95,6 +103,7 @@ Outcome run(const Stage& stage, const ReproduceOptions& options)
         return Outcome::failed;
     write_whole(file, sealed(read_bytes(part), closing_line(stage, options, lines, status, seconds)));
     fs::remove(part, ignored);
+    fs::remove_all(cells, ignored);
     return status == 0 ? Outcome::stored : Outcome::check_failed;
 }
 
@@ -132,16 +141,20 @@ int reproduce(const ReproduceOptions& options)
     std::error_code error;
     fs::create_directories(options.out, error);
     // Two runs at once would take turns in spoiling each other's measurements.
-    const FileLock lock(fs::path(options.out) / ".lock", options.out,
+    const Shard shard = options.shard.empty() ? Shard{} : parse_shard(options.shard);
+    const std::string lock_name = shard.count == 1 ? ".lock" : fmt::format(".lock-{}-{}", shard.index, shard.count);
+    const FileLock lock(fs::path(options.out) / lock_name, options.out,
                         "another 'cinch reproduce' is writing there; wait for it, or use another --out");
     catch_interrupt();
     std::vector<Stage> wanted;
     double left = 0;
+    std::size_t number = 0, stored = 0;
     for (Stage& stage : stages()) {
-        if (options.quick && stage.quick.empty())
+        if ((options.quick && stage.quick.empty()) || !shard.has(number++))
             continue;
         if (is_stored(fs::path(options.out) / (stage.name + ".jsonl"), stage, options)) {
             fmt::print(stderr, "{}: stored\n", stage.name);
+            ++stored;
             continue;
         }
         left += options.quick ? stage.quick_seconds : stage.seconds;
@@ -160,8 +173,10 @@ int reproduce(const ReproduceOptions& options)
                    duration(left * (done > 0.05 * planned ? elapsed / done : 1)));
         switch (run(stage, options)) {
         case Outcome::stored:
+            ++stored;
             break;
         case Outcome::check_failed:
+            ++stored;
             bad.push_back(stage.name + ": a check failed");
             refuted = true;
             break;
@@ -174,25 +189,63 @@ int reproduce(const ReproduceOptions& options)
         left -= options.quick ? stage.quick_seconds : stage.seconds;
     }
     const fs::path page = fs::path(options.out) / "report.html";
-    const auto damage = write_page(options.out, page);
+    std::vector<Damage> damage;
+    if (shard.count == 1)
+        damage = write_page(options.out, page);
     for (const std::string& what : bad)
         fmt::print(stderr, "cinch: {}\n", what);
     if (interrupted()) {
         fmt::print(stderr, "cinch: interrupted; what is finished is kept, and the same command continues\n");
         return 130;
     }
-    fmt::print("{}\n", page.string());
+    if (shard.count == 1)
+        fmt::print("{}\n", page.string());
+    else
+        fmt::print("shard {} of {}: {} are stored in {}; when all shards are, run 'cinch merge {}'\n", shard.index,
+                   shard.count, counted(stored, "experiment", "experiments"), options.out, options.out);
     return refuted ? 1 : bad.empty() && damage.empty() ? 0 : 2;
+}
+
+bool holds_results(const std::string& folder)
+{
+    std::error_code error;
+    const auto all = stages();
+    return std::any_of(all.begin(), all.end(), [&](const Stage& stage) {
+        return fs::exists(fs::path(folder) / (stage.name + ".jsonl"), error);
+    });
+}
+
+int merge_results(const std::string& folder)
+{
+    ReproduceOptions options{folder, false, 0, ""};
+    for (const Stage& stage : stages()) { // of what run: as the first one stored says
+        const fs::path file = fs::path(folder) / (stage.name + ".jsonl");
+        std::vector<Damage> damage;
+        const auto records = fs::exists(file) ? read_results(file, damage) : std::vector<Record>{};
+        if (records.empty())
+            continue;
+        options.quick = records.back().fields.value("quick", false);
+        options.seed = records.back().fields.value("seed", std::uint64_t{0});
+        break;
+    }
+    std::vector<std::string> missing;
+    for (const Stage& stage : stages())
+        if (!(options.quick && stage.quick.empty()) &&
+            !is_stored(fs::path(folder) / (stage.name + ".jsonl"), stage, options))
+            missing.push_back(stage.name);
+    if (!missing.empty())
+        throw InputError::in_file(folder, fmt::format("lacks {}; 'cinch reproduce{}{} --out {}' runs what is missing",
+                                                      fmt::join(missing, ", "), options.quick ? " --quick" : "",
+                                                      options.seed ? fmt::format(" --seed {}", options.seed) : "",
+                                                      folder));
+    return report({folder, ""});
 }
 
 int report(const ReportOptions& options)
 {
     require_gnuplot("cinch report");
     const fs::path folder = options.folder;
-    std::error_code error;
-    const auto all = stages();
-    if (std::none_of(all.begin(), all.end(),
-                     [&](const Stage& stage) { return fs::exists(folder / (stage.name + ".jsonl"), error); }))
+    if (!holds_results(options.folder))
         throw InputError::in_file(options.folder,
                                   "holds no results; 'cinch reproduce --out " + options.folder + "' makes them");
     const fs::path page = options.page.empty() ? folder / "report.html" : fs::path(options.page);

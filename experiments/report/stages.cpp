@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/report/stages.hpp"
 
+#include <algorithm>
 #include <iterator>
 #include <sstream>
 
@@ -16,6 +17,13 @@ std::vector<std::string> words(const std::string& text)
 }
 
 } // namespace
+
+bool Stage::runs_in_cells() const
+{
+    return arguments.front() == "tightness" ||
+           (arguments.front() == "verify" &&
+            std::find(arguments.begin(), arguments.end(), "--update") == arguments.end());
+}
 
 std::vector<Stage> stages()
 {

@@ -14,6 +14,9 @@ struct Stage {
     std::vector<std::string> arguments; ///< all of it; --json and --seed are added
     std::vector<std::string> quick;     ///< the same on less data; empty: not part of --quick
     double seconds, quick_seconds;      ///< to expect on two cores; for the time left only
+
+    /// Whether its command keeps what is finished with --out, and is no measurement of times.
+    bool runs_in_cells() const;
 };
 
 /// In the order in which they run: those that say most come first.

@@ -66,7 +66,7 @@ def main():
     assert done.returncode == 0, (done.returncode, done.stderr)
     assert "scaling: stored" in done.stderr and " left" in done.stderr, done.stderr
     assert (folder / "scaling.jsonl").read_bytes() == before, "what was finished was measured again"
-    assert not list(folder.glob("*.part"))
+    assert not list(folder.glob("*.part")) and not list(folder.glob("*.cells"))
     assert done.stdout.strip() == str(folder / "report.html"), done.stdout
 
     text = (folder / "report.html").read_text()
@@ -95,6 +95,17 @@ def main():
     # Once more: nothing is left to run. Then damage.
     again = subprocess.run(command, capture_output=True, text=True)
     assert again.returncode == 0 and again.stderr.count(": stored") == len(list(folder.glob("*.jsonl"))), again.stderr
+    # Shards of it are parts of the same: each finds its own experiments, merge misses what none has.
+    shares = [subprocess.run([*command, "--shard", f"{i}/5"], capture_output=True, text=True) for i in range(5)]
+    assert all(share.returncode == 0 for share in shares), [share.stderr for share in shares]
+    found = [line for share in shares for line in share.stderr.splitlines()]
+    assert sorted(found) == sorted(again.stderr.splitlines()), found
+    merged = subprocess.run([program, "merge", str(folder)], capture_output=True, text=True)
+    assert merged.returncode == 0 and merged.stdout.strip() == str(folder / "report.html"), merged
+    (folder / "fishes.jsonl").rename(folder / "fishes.away")
+    merged = subprocess.run([program, "merge", str(folder)], capture_output=True, text=True)
+    assert merged.returncode == 2 and "lacks fishes; 'cinch reproduce --quick --out" in merged.stderr, merged
+    (folder / "fishes.away").rename(folder / "fishes.jsonl")
     damaged = folder / "cost.jsonl"
     damaged.write_bytes(damaged.read_bytes()[:-200])
     report = subprocess.run([program, "report", str(folder)], capture_output=True, text=True)
