@@ -47,8 +47,12 @@ const std::vector<std::string> contestants = [] {
 }();
 
 struct MethodTimes {
-    std::map<std::string, double> ns;
+    std::map<std::string, Range> ns;
+    std::map<std::string, std::size_t> place; ///< among the contestants
+    RaceTimes race;
     double project_ns = 0;
+
+    Range over(const std::string& a, const std::string& b) const { return race.ratio(place.at(a), place.at(b)); }
     std::string best_kind;
 };
 
@@ -113,11 +117,13 @@ template <class T> MethodTimes measure(const Input& input, const ScalingOptions&
     ProjectedMaps<T> projected;
     calls.emplace_back(
         [&] { project(std::span<const AffineMap>(frame), best.packed.rest, 6, Rounding::proven, projected); });
-    const std::vector<double> ns = race(calls, options.seconds);
     MethodTimes times;
-    for (std::size_t i = 0; i < contestants.size(); ++i)
-        times.ns[contestants[i]] = ns[i];
-    times.project_ns = ns.back();
+    times.race = race(calls, options.seconds);
+    for (std::size_t i = 0; i < contestants.size(); ++i) {
+        times.ns.emplace(contestants[i], times.race.of(i));
+        times.place[contestants[i]] = i;
+    }
+    times.project_ns = times.race.of(contestants.size()).value;
     times.best_kind = name_of(best.packed.bvs[0].kind);
     if (best.packed.bvs[0].also)
         times.best_kind += "+" + std::string(name_of(best.packed.bvs[best.packed.bvs[0].also].kind));
@@ -132,28 +138,40 @@ std::string microseconds(double ns)
 std::vector<Figure> figures_of(const MethodTimes (&times)[3][3])
 {
     std::vector<Figure> figures;
-    auto figure = [&](std::string what, double value, const char* format, std::string target, bool reached) {
-        figures.push_back({std::move(what), fmt::format(fmt::runtime(format), value), std::move(target), reached});
+    auto figure = [&](std::string what, const Range& value, const char* format, std::string target, Verdict is) {
+        figures.emplace_back(std::move(what), fmt::format(fmt::runtime(format), value.value) + mark(value),
+                             std::move(target), is);
     };
-    auto over = [&](const char* a, const char* b) { return times[1][2].ns.at(a) / times[1][2].ns.at(b); };
-    const double textbook = over("textbook", "best"), eq12 = over("best", "eq12"), proof = over("best", "unproven");
-    figure("textbook Eq. 12 / default, n = 509", textbook, "{:.1f}", ">= 20", textbook >= 20);
-    const double axes = over("textbook-axes", "best");
-    figure("textbook by centre and axes / default", axes, "{:.1f}", "-", true);
-    figure("default / own SIMD eq12, n = 509", eq12, "{:.2f}", "<= 1", eq12 <= 1);
-    figure("proven / unproven default, n = 509", proof, "{:.2f}", "<= 1.10", proof <= 1.1);
+    auto over = [&](const char* a, const char* b) { return times[1][2].over(a, b); };
+    const Range textbook = over("textbook", "best"), eq12 = over("best", "eq12"), proof = over("best", "unproven");
+    figure("textbook Eq. 12 / default, n = 509", textbook, "{:.1f}", ">= 20", at_least(textbook, 20));
+    const Range axes = over("textbook-axes", "best");
+    figure("textbook by centre and axes / default", axes, "{:.1f}", "-", Verdict::holds);
+    figure("default / own SIMD eq12, n = 509", eq12, "{:.2f}", "<= 1", at_most(eq12, 1));
+    figure("proven / unproven default, n = 509", proof, "{:.2f}", "<= 1.10", at_most(proof, 1.1));
     for (std::size_t n = 0; n < 3; ++n) {
-        const double invariance = times[2][n].ns.at("best") / times[0][n].ns.at("best");
+        const Range invariance = times[2][n].ns.at("best") / times[0][n].ns.at("best");
         figure(fmt::format("145K vertices / 3.5K, n = {}", node_counts[n]), invariance, "{:.2f}", "<= 1.1",
-               invariance <= 1.1);
+               at_most(invariance, 1.1));
     }
     std::vector<double> size(std::begin(node_counts), std::end(node_counts)), ns;
     for (const MethodTimes& t : times[1])
-        ns.push_back(t.ns.at("best"));
-    const double slope = log_slope(size, ns), optimal = times[2][2].ns.at("optimal") / times[2][2].ns.at("best");
-    figure("exponent of n in the default's time", slope, "{:.2f}", "<= 1", slope <= 1);
-    figure("optimal AABB at 145K / default, n = 509", optimal, "{:.0f}", ">= 2000", optimal >= 2000);
+        ns.push_back(t.ns.at("best").value);
+    const Range slope = log_slope(size, ns), optimal = times[2][2].over("optimal", "best");
+    figure("exponent of n in the default's time", slope, "{:.2f}", "<= 1", at_most(slope, 1));
+    figure("optimal AABB at 145K / default, n = 509", optimal, "{:.0f}", ">= 2000", at_least(optimal, 2000));
     return figures;
+}
+
+Load load_of(const MethodTimes (&times)[3][3])
+{
+    Load load;
+    for (const auto& by_nodes : times)
+        for (const MethodTimes& t : by_nodes) {
+            load.cpu_share = std::min(load.cpu_share, t.race.cpu_share);
+            load.load = std::max(load.load, t.race.load);
+        }
+    return load;
 }
 
 // Each size is measured in one frame.
@@ -204,7 +222,11 @@ int scaling_of(const ScalingOptions& options, const Provenance& from, RecordOutp
                                    {"precision", name_of(options.precision)},
                                    {"n", input.surface.weights.node_count},
                                    {"vertices", input.surface.mesh.vertices.size()},
-                                   {"ns_per_bound", times.ns.at(name)},
+                                   {"ns_per_bound", times.ns.at(name).value},
+                                   {"ns_per_bound_low", times.ns.at(name).low},
+                                   {"ns_per_bound_high", times.ns.at(name).high},
+                                   {"cpu_share", times.race.cpu_share},
+                                   {"load", times.race.load},
                                    {"frames_done", 1},
                                    {"frames", 1}});
         }
@@ -263,7 +285,11 @@ int scaling(const ScalingOptions& options)
                          {"precision", name_of(options.precision)},
                          {"n", node_counts[n]},
                          {"vertices", sizes[v].vertices},
-                         {"ns_per_bound", times[v][n].ns.at(name)},
+                         {"ns_per_bound", times[v][n].ns.at(name).value},
+                         {"ns_per_bound_low", times[v][n].ns.at(name).low},
+                         {"ns_per_bound_high", times[v][n].ns.at(name).high},
+                         {"cpu_share", times[v][n].race.cpu_share},
+                         {"load", times[v][n].race.load},
                          {"frames_done", 1},
                          {"frames", 1},
                          {"paper_us", sizes[v].paper_us(name == "optimal" ? name : std::to_string(node_counts[n]))}});
@@ -274,11 +300,7 @@ int scaling(const ScalingOptions& options)
     const Completeness completeness = completeness_in_sizes(records.size() / contestants.size(), 9);
     if (completeness.complete)
         for (const Figure& f : figures_of(times))
-            records.push_back({{"experiment", "scaling"},
-                               {"figure", f.what},
-                               {"measured", f.measured},
-                               {"target", f.target},
-                               {"reached", f.reached}});
+            records.push_back(record_of(f, "scaling"));
     output.set(completeness);
     output.add_all(records);
     output.finish();
@@ -300,9 +322,9 @@ int scaling(const ScalingOptions& options)
         std::vector<double> size(std::begin(node_counts), std::end(node_counts)), ns;
         for (const auto& by_nodes : times)
             for (const MethodTimes& t : by_nodes)
-                row.push_back(microseconds(t.ns.at(name)));
+                row.push_back(microseconds(t.ns.at(name).value) + mark(t.ns.at(name)));
         for (const MethodTimes& t : times[1])
-            ns.push_back(t.ns.at(name));
+            ns.push_back(t.ns.at(name).value);
         row.push_back(fmt::format("{:.2f}", log_slope(size, ns)));
         rows.push_back(std::move(row));
     }
@@ -318,8 +340,8 @@ int scaling(const ScalingOptions& options)
                "(Definition 1 of the paper); -axes: by centre and axes (its section 6). paper:\n"
                "Table 1, its Eq. 12 on a 3.4 GHz Pentium 4; its optimal AABB took 2,000, 17,200\n"
                "and 82,500. default: 'best', here '{}'. One core, all methods in turn.\n"
-               "Once per frame all transforms are projected: {} microseconds for 509.\n\n",
-               times[1][2].best_kind, microseconds(times[1][2].project_ns));
+               "Once per frame all transforms are projected: {} microseconds for 509.\n{}\n\n",
+               times[1][2].best_kind, microseconds(times[1][2].project_ns), describe(load_of(times)));
     print(figures_of(times));
     fmt::print("\n{}\n", describe(from));
     return 0;

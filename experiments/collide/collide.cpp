@@ -176,11 +176,7 @@ int print_results(const Merged& all, const OutputOptions& options, const Provena
         for (const Measured& m : r.backends)
             output.add(record(r, m, cold));
     for (const Figure& f : figures_of(results, cold))
-        output.add({{"experiment", "collide"},
-                    {"figure", f.what},
-                    {"measured", f.measured},
-                    {"target", f.target},
-                    {"reached", f.reached}});
+        output.add(record_of(f, "collide"));
     for (const Slope& s : slopes_of(results))
         output.add({{"experiment", "collide"}, {"slope", s.what}, {"exponent", s.exponent}});
     output.finish();

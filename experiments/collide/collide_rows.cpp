@@ -19,6 +19,8 @@ template <class M, class Field> void fields_of_measured(M& m, const Field& field
     field("update_ms", m.update_ms);
     field("query_ms", m.query_ms);
     field("total_ms", m.total_ms);
+    field("total_ms_low", m.total_ms_low);
+    field("total_ms_high", m.total_ms_high);
     field("pairs", m.pairs);
     field("frames_done", m.frames);
     field("frames", m.frames_wanted);
@@ -95,6 +97,8 @@ Json record(const SceneResult& r, const Measured& m, bool cold)
              {"update_ms", m.update_ms},
              {"query_ms", m.query_ms},
              {"total_ms", m.total_ms},
+             {"total_ms_low", m.total_ms_low},
+             {"total_ms_high", m.total_ms_high},
              {"pairs", m.pairs},
              {"pairs_differing", m.differing},
              {"megabytes_per_body", m.megabytes}};

@@ -121,7 +121,7 @@ void print_backends(const SceneResult& r)
         rows.push_back(
             {m.frames == m.frames_wanted ? m.backend : fmt::format("{} ({} frames)", m.backend, frames_of(m)),
              m.evaluate_ms < 5e-4 ? "-" : ms(m.evaluate_ms), ms(m.update_ms), ms(m.query_ms), ms(m.total_ms),
-             times(m.total_ms / r.backends[0].total_ms), fmt::format("{:.0f}", m.pairs),
+             times(m.total_ms / r.backends[0].total_ms) + mark(m.total()), fmt::format("{:.0f}", m.pairs),
              m.differing ? grouped(m.differing) : "-", fmt::format("{:.1f}", m.megabytes)});
     fmt::print("{}, ms per frame (medians over {} frames){}\n\n{}\n", r.scene, frames_of(r.backends[0]),
                r.is_complete() ? ""
@@ -207,8 +207,9 @@ std::vector<Figure> figures_of(const std::vector<SceneResult>& results, bool col
     constexpr double over_embree[8] = {5, 3.3, 35, 35, 2.7, 2.7, 8, 8},
                      over_refit[8] = {2.5, 1.7, 17, 17, 1.7, 1.7, 4.5, 4.5};
     std::vector<Figure> figures;
-    auto ratio = [&](const std::string& what, double measured, double target) {
-        figures.push_back({what, times(measured), fmt::format(">= {}", target), measured >= target});
+    auto ratio = [&](const std::string& what, const Range& measured, double target) {
+        figures.push_back(
+            {what, times(measured.value) + mark(measured), fmt::format(">= {}", target), at_least(measured, target)});
     };
     for (const SceneResult& r : results) {
         const Measured *own = r.of("cinch"), *embree = r.of("embree"), *refit = r.of("refit-16"),
@@ -218,9 +219,9 @@ std::vector<Figure> figures_of(const std::vector<SceneResult>& results, bool col
             continue;
         const double share = cold ? 0.5 : 1;
         if (n && embree)
-            ratio(r.scene + ": Embree / cinch", embree->total_ms / own->total_ms, share * over_embree[n - 1]);
+            ratio(r.scene + ": Embree / cinch", embree->total() / own->total(), share * over_embree[n - 1]);
         if (n && refit)
-            ratio(r.scene + ": own full refit, 16 / cinch", refit->total_ms / own->total_ms, share * over_refit[n - 1]);
+            ratio(r.scene + ": own full refit, 16 / cinch", refit->total() / own->total(), share * over_refit[n - 1]);
         if (refit && full) {
             const double worst = worst_quarter(r, *own, {refit, full});
             figures.push_back({r.scene + ": cinch / full refit, worst 1/4", times(worst), "<= 1.1", worst <= 1.1});
@@ -279,7 +280,8 @@ void print_tables(const std::vector<SceneResult>& results, bool cold)
         print_backends(r);
     fmt::print(
         "times: the total over that of '{}'; differ: pairs that only one of the two\nfound. evaluate: all vertices up "
-        "front, by SIMD with the bits of the exact test;\n'-' where they are evaluated on demand. {}\n\n",
+        "front, by SIMD with the bits of the exact test;\n'-' where they are evaluated on demand. {}\n"
+        "On one thread times are those on a core; ~: rounds are over 10 % apart.\n\n",
         results[0].backends[0].backend,
         cold ? "Caches evicted before every frame." : "Every backend runs through all frames in turn.");
     print_counts(results);

@@ -2,7 +2,7 @@
 #include "experiments/collide/measure.hpp"
 
 #include <algorithm>
-#include <chrono>
+#include <ctime>
 
 #include <tbb/global_control.h>
 
@@ -58,30 +58,32 @@ void add(QueryCounts& sum, const QueryCounts& c)
 }
 
 // One frame, step by step. The first round also compares and counts.
-void run_frame(Contestant& c, std::size_t frame, bool cold, std::vector<TrianglePair>& pairs)
+void run_frame(Contestant& c, std::size_t frame, const MeasureOptions& options, std::vector<TrianglePair>& pairs)
 {
-    using Clock = std::chrono::steady_clock;
-    auto ms = [](Clock::time_point from, Clock::time_point to) {
-        return std::chrono::duration<double, std::milli>(to - from).count();
+    const clockid_t clock = options.threads == 1 ? CLOCK_PROCESS_CPUTIME_ID : CLOCK_MONOTONIC;
+    auto now = [clock] {
+        timespec at{};
+        clock_gettime(clock, &at);
+        return 1e3 * static_cast<double>(at.tv_sec) + 1e-6 * static_cast<double>(at.tv_nsec);
     };
     throw_if_interrupted();
-    if (cold)
+    if (options.cold)
         evict_caches();
     pairs.clear();
-    const auto start = Clock::now();
+    const double start = now();
     c.backend->evaluate(frame);
-    const auto evaluated = Clock::now();
+    const double evaluated = now();
     throw_if_interrupted();
     c.backend->update();
-    const auto updated = Clock::now();
+    const double updated = now();
     throw_if_interrupted();
     c.backend->query(pairs);
-    const auto end = Clock::now();
+    const double end = now();
     Times& t = c.frames[frame];
-    t.evaluate.push_back(ms(start, evaluated));
-    t.update.push_back(ms(evaluated, updated));
-    t.query.push_back(ms(updated, end));
-    t.total.push_back(ms(start, end));
+    t.evaluate.push_back(evaluated - start);
+    t.update.push_back(updated - evaluated);
+    t.query.push_back(end - updated);
+    t.total.push_back(end - start);
 }
 
 } // namespace
@@ -113,7 +115,7 @@ std::vector<Measured> measure(const CollideScene& scene, const std::vector<Backe
             for (std::size_t k = 0; k < kinds.size(); ++k) {
                 Contestant& c = all[k];
                 for (std::size_t f = 0; f < scene.frames() && !(round > 0 && c.slow); ++f) {
-                    run_frame(c, f, options.cold, pairs);
+                    run_frame(c, f, options, pairs);
                     if (round > 0)
                         continue;
                     c.slow |= c.frames[f].total[0] > slow_ms;
@@ -157,6 +159,15 @@ std::vector<Measured> measure(const CollideScene& scene, const std::vector<Backe
         c.out.update_ms = median(update);
         c.out.query_ms = median(query);
         c.out.total_ms = median(c.out.total_of_frame);
+        c.out.total_ms_low = c.out.total_ms_high = c.out.total_ms;
+        for (std::size_t round = 0; round < c.out.rounds; ++round) {
+            std::vector<double> of_round;
+            for (const Times& t : c.frames)
+                of_round.push_back(t.total[round]);
+            const double middle = median(std::move(of_round));
+            c.out.total_ms_low = std::min(c.out.total_ms_low, middle);
+            c.out.total_ms_high = std::max(c.out.total_ms_high, middle);
+        }
         c.out.pairs = median(c.out.pairs_of_frame);
         c.out.megabytes = static_cast<double>(c.backend->bytes()) / 1e6 / static_cast<double>(scene.bodies.size());
         results.push_back(std::move(c.out));

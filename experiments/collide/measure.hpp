@@ -2,18 +2,22 @@
 #pragma once
 
 #include "experiments/collide/backend.hpp"
+#include "experiments/measure/verdict.hpp"
 
 namespace cinch {
 
-/// What one backend did on a scene. Times are medians over the frames, each frame's the median over the rounds.
+/// What one backend did on a scene. On one thread times are those that the process had a core for, so that other
+/// processes that take it away do not count. Times are medians over the frames, each frame's the median over the rounds.
 struct Measured {
     std::string backend;
     double evaluate_ms = 0, update_ms = 0, query_ms = 0, total_ms = 0;
+    double total_ms_low = 0, total_ms_high = 0; ///< of the rounds, each one's median over its frames
     double pairs = 0;       ///< median per frame
     std::size_t frames = 0; ///< measured
     std::size_t frames_wanted = 0, rounds = 0,
                 rounds_wanted = 0; ///< more than measured after an interrupt; a slow backend wants one round
 
+    Range total() const { return {total_ms, total_ms_low, total_ms_high}; }
     bool is_complete() const { return frames == frames_wanted && rounds == rounds_wanted; }
     std::size_t differing = 0; ///< pairs that only it or only the first backend found, over all frames
     double megabytes = 0;      ///< per body

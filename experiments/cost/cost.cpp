@@ -22,20 +22,37 @@ struct Row {
     int kdop;
     std::string method, arithmetic, guarantee;
     bool proven;
-    double ns, ratio_to_double, looseness;
+    Range ns, ratio_to_double; ///< per BV
+    double looseness;
     double below, worst_below; ///< share of the supports below the exact value, and by how much at most, in widths;
                                ///< NaN: none known
-    bool pareto = false;
+    Verdict pareto = Verdict::unknown; ///< inconclusive where it rests on times whose quartiles overlap
 };
 
 // Faster, tighter and proven, or as good in each and better in one: then the other need not be considered.
-bool dominates(const Row& a, const Row& b)
+Verdict dominates(const Row& a, const Row& b)
 {
-    const bool as_good = a.ns <= b.ns && a.looseness <= b.looseness * (1 + 1e-12) && a.proven >= b.proven;
-    return as_good && (a.ns < b.ns || a.looseness < b.looseness * (1 - 1e-12) || a.proven > b.proven);
+    if (a.looseness > b.looseness * (1 + 1e-12) || a.proven < b.proven)
+        return Verdict::fails;
+    const bool is_better = a.looseness < b.looseness * (1 - 1e-12) || a.proven > b.proven;
+    if (a.ns.high < b.ns.low || (is_better && a.ns.value == b.ns.value))
+        return Verdict::holds;
+    return a.ns.low > b.ns.high ? Verdict::fails : Verdict::inconclusive;
 }
 
-std::vector<Row> measure(const CostSample& sample, int kdop, double seconds)
+// Of a row: nothing else dominates it.
+Verdict pareto(const std::vector<Row>& rows, const Row& row)
+{
+    std::vector<Verdict> all{Verdict::holds};
+    for (const Row& other : rows)
+        if (&other != &row) {
+            const Verdict is = dominates(other, row);
+            all.push_back(is == Verdict::holds ? Verdict::fails : is == Verdict::fails ? Verdict::holds : is);
+        }
+    return all_of(all);
+}
+
+std::vector<Row> measure(const CostSample& sample, int kdop, double seconds, Load& load)
 {
     const auto k = static_cast<std::size_t>(kdop);
     std::vector<CostContestant> contestants = scalar_contestants(sample, kdop);
@@ -58,7 +75,9 @@ std::vector<Row> measure(const CostSample& sample, int kdop, double seconds)
     }
     for (std::size_t i = 0; i < contestants.size(); ++i)
         calls.emplace_back([&, i] { contestants[i].bound(supports[i]); });
-    const std::vector<double> ns = race(calls, seconds);
+    const RaceTimes times = race(calls, seconds);
+    load.cpu_share = std::min(load.cpu_share, times.cpu_share);
+    load.load = std::max(load.load, times.load);
 
     auto find = [&](const std::string& method, const char* arithmetic) {
         return static_cast<std::size_t>(
@@ -76,8 +95,8 @@ std::vector<Row> measure(const CostSample& sample, int kdop, double seconds)
                 c.arithmetic,
                 c.guarantee,
                 c.proven,
-                ns[i] / static_cast<double>(sample.bvs.size()),
-                ns[i] / ns[plain],
+                times.of(i) / Range(static_cast<double>(sample.bvs.size())),
+                times.ratio(i, plain),
                 0,
                 NAN,
                 NAN};
@@ -109,7 +128,7 @@ std::vector<Row> measure(const CostSample& sample, int kdop, double seconds)
         rows.push_back(row);
     }
     for (Row& row : rows)
-        row.pareto = std::none_of(rows.begin(), rows.end(), [&](const Row& other) { return dominates(other, row); });
+        row.pareto = pareto(rows, row);
     return rows;
 }
 
@@ -131,7 +150,7 @@ std::vector<Figure> figures_of(const std::vector<DualGap>& gaps)
 }
 
 void print_tables(const Input& input, const CostSample& sample, const std::vector<Row>& rows,
-                  const std::vector<DualGap>& gaps)
+                  const std::vector<DualGap>& gaps, const Load& load)
 {
     for (const std::string& line : input.report)
         fmt::print("{}\n", line);
@@ -141,11 +160,14 @@ void print_tables(const Input& input, const CostSample& sample, const std::vecto
         std::vector<std::vector<std::string>> lines;
         for (; first < rows.size() && rows[first].kdop == kdop; ++first) {
             const Row& r = rows[first];
-            lines.push_back({r.method, r.arithmetic, grouped(static_cast<std::size_t>(r.ns + 0.5)),
-                             fmt::format("{:.2f}", r.ratio_to_double), fmt::format("{:.4f}", r.looseness),
+            lines.push_back({r.method, r.arithmetic, grouped(static_cast<std::size_t>(r.ns.value + 0.5)),
+                             fmt::format("{:.2f}{}", r.ratio_to_double.value, mark(r.ratio_to_double)),
+                             fmt::format("{:.4f}", r.looseness),
                              r.below > 0 ? fmt::format("{:.0f} %", 100 * r.below) : "0",
                              r.worst_below > 0 ? fmt::format("{:.0e}", r.worst_below) : "-", r.guarantee,
-                             r.pareto ? "*" : ""});
+                             r.pareto == Verdict::holds   ? "*"
+                             : r.pareto == Verdict::fails ? ""
+                                                          : "?"});
         }
         fmt::print("\n{}-DOP\n\n{}", kdop,
                    table({"method", "arithmetic", "ns", "/ double", "ratio", "below", "worst", "proof", "opt"}, lines));
@@ -155,8 +177,10 @@ void print_tables(const Input& input, const CostSample& sample, const std::vecto
                "the width at most, a support fell below the exact value of its method (for local,\n"
                "support, linear and best: below the vertices). proof: proven, exact, none, or\n"
                "the error to expect. opt: Pareto-optimal, nothing else is as fast, as tight and as\n"
-               "well proven. interval: directed rounding. rational: the exact value, rounded up.\n\n"
-               "how far the dual evaluation is from the optimum, per cent of the bound's width\n\n");
+               "well proven; ? where quartiles of times overlap. interval: directed rounding.\n"
+               "rational: the exact value, rounded up.\n{}\n\n"
+               "how far the dual evaluation is from the optimum, per cent of the bound's width\n\n",
+               describe(load));
     std::vector<std::vector<std::string>> lines;
     for (const DualGap& gap : gaps) {
         std::vector<std::string> line{gap.input, std::string(name_of(gap.method)), range_of(gap), grouped(gap.bounds)};
@@ -189,6 +213,7 @@ int cost(const CostOptions& options)
     catch_interrupt();
     std::vector<DualGap> gaps;
     std::vector<Row> rows;
+    Load load;
     std::size_t done = 0;
     const std::size_t wanted = 1 + others.size() + options.kdops.size();
     try {
@@ -207,7 +232,7 @@ int cost(const CostOptions& options)
         }
         pin_to_one_core();
         for (const int kdop : options.kdops)
-            step(measure(sample, kdop, options.seconds), rows);
+            step(measure(sample, kdop, options.seconds, load), rows);
     } catch (const Interrupted&) { // whole k-DOPs and inputs are kept
     }
     const std::size_t measured = done - std::min(done, 1 + others.size());
@@ -223,13 +248,20 @@ int cost(const CostOptions& options)
                            {"method", r.method},
                            {"arithmetic", r.arithmetic},
                            {"kdop", r.kdop},
-                           {"ns_per_bound", r.ns},
-                           {"ratio_to_double", r.ratio_to_double},
+                           {"ns_per_bound", r.ns.value},
+                           {"ns_per_bound_low", r.ns.low},
+                           {"ns_per_bound_high", r.ns.high},
+                           {"ratio_to_double", r.ratio_to_double.value},
+                           {"ratio_to_double_low", r.ratio_to_double.low},
+                           {"ratio_to_double_high", r.ratio_to_double.high},
+                           {"settled", r.ratio_to_double.is_settled()},
+                           {"cpu_share", load.cpu_share},
+                           {"load", load.load},
                            {"mean_ratio", number(r.looseness)},
                            {"below_exact", number(r.below)},
                            {"worst_below", number(r.worst_below)},
                            {"guarantee", r.guarantee},
-                           {"pareto", r.pareto}});
+                           {"pareto", r.pareto == Verdict::holds}});
     for (const DualGap& gap : gaps)
         for (int passes = 0; passes < 5; ++passes)
             records.push_back({{"experiment", "cost"},
@@ -243,17 +275,13 @@ int cost(const CostOptions& options)
                                {"frames_done", gap.frames},
                                {"frames", gap.frames}});
     for (const Figure& f : figures_of(gaps))
-        records.push_back({{"experiment", "cost"},
-                           {"figure", f.what},
-                           {"measured", f.measured},
-                           {"target", f.target},
-                           {"reached", f.reached}});
+        records.push_back(record_of(f, "cost"));
     output.set(completeness);
     output.add_all(records);
     output.finish();
     if (!options.output.records_only()) {
         print_note(completeness);
-        print_tables(input, sample, rows, gaps);
+        print_tables(input, sample, rows, gaps, load);
         print(figures_of(gaps));
         fmt::print("\n{}\n", describe(from));
     }

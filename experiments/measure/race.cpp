@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
+#include <ctime>
 
 #include <fmt/format.h>
 #include <sched.h>
@@ -13,12 +15,20 @@
 namespace cinch {
 namespace {
 
+// What this thread has had a core for.
+double seconds_on_core()
+{
+    timespec now{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
 double timed(const std::function<void()>& call, std::size_t times)
 {
-    const auto start = std::chrono::steady_clock::now();
+    const double start = seconds_on_core();
     for (std::size_t i = 0; i < times; ++i)
         call();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return seconds_on_core() - start;
 }
 
 } // namespace
@@ -31,9 +41,28 @@ void pin_to_one_core()
     sched_setaffinity(0, sizeof one, &one);
 }
 
-std::vector<double> race(const std::vector<std::function<void()>>& contestants, double seconds)
+std::string describe(const Load& load)
+{
+    return fmt::format("Times are medians over rounds, in time on a core; ~: the quartiles are over 10 % apart.\n"
+                       "The machine's load was {:.1f}; this measurement had a core for {:.0f} % of its time.",
+                       load.load, 100 * load.cpu_share);
+}
+
+const char* mark(const Range& range) { return range.is_settled() ? "" : "~"; }
+
+Range RaceTimes::ratio(std::size_t contestant, std::size_t base) const
+{
+    std::vector<double> ratios;
+    for (std::size_t r = 0; r < ns[contestant].size(); ++r)
+        ratios.push_back(ns[contestant][r] / ns[base][r]);
+    return range_of(std::move(ratios));
+}
+
+RaceTimes race(const std::vector<std::function<void()>>& contestants, double seconds)
 {
     constexpr double batch = 1e-3;
+    const auto start = std::chrono::steady_clock::now();
+    const double start_on_core = seconds_on_core();
     std::vector<std::size_t> times;
     double round = 0; // seconds for one batch of everyone
     for (const auto& call : contestants) {
@@ -44,19 +73,18 @@ std::vector<double> race(const std::vector<std::function<void()>>& contestants, 
         round += once * static_cast<double>(times.back());
     }
     const auto rounds = std::max<std::size_t>(3, static_cast<std::size_t>(seconds / round));
-    std::vector<std::vector<double>> ns(contestants.size());
+    RaceTimes out;
+    out.ns.resize(contestants.size());
     for (std::size_t r = 0; r < rounds; ++r)
         for (std::size_t i = 0; i < contestants.size(); ++i) {
             throw_if_interrupted();
-            ns[i].push_back(1e9 * timed(contestants[i], times[i]) / static_cast<double>(times[i]));
+            out.ns[i].push_back(1e9 * timed(contestants[i], times[i]) / static_cast<double>(times[i]));
         }
-    std::vector<double> median;
-    for (auto& all : ns) {
-        const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
-        std::nth_element(all.begin(), middle, all.end());
-        median.push_back(*middle);
-    }
-    return median;
+    const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    out.cpu_share = std::min(1.0, (seconds_on_core() - start_on_core) / wall);
+    if (getloadavg(&out.load, 1) != 1)
+        out.load = 0;
+    return out;
 }
 
 double log_slope(const std::vector<double>& size, const std::vector<double>& ns)
@@ -73,11 +101,20 @@ double log_slope(const std::vector<double>& size, const std::vector<double>& ns)
     return (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
+nlohmann::ordered_json record_of(const Figure& f, const char* experiment)
+{
+    nlohmann::ordered_json reached;
+    if (f.verdict == Verdict::holds || f.verdict == Verdict::fails)
+        reached = f.verdict == Verdict::holds;
+    return {{"experiment", experiment}, {"figure", f.what},    {"measured", f.measured},
+            {"target", f.target},       {"reached", reached}, {"verdict", name_of(f.verdict)}};
+}
+
 void print(const std::vector<Figure>& figures)
 {
     for (const Figure& f : figures)
         fmt::print("{:<44} {:>7}  target {:<7} {}\n", f.what, f.measured, f.target,
-                   f.reached ? "reached" : "FALLS SHORT");
+                   said_of_target(f.verdict));
 }
 
 } // namespace cinch

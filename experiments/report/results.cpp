@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <functional>
 #include <fstream>
 
 #include <fmt/format.h>
@@ -14,9 +16,17 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Traced combined(const Traced& a, const Traced& b, double value)
+// The operation on values, and on all ends of what they may be.
+template <class Operation> Traced combined(const Traced& a, const Traced& b, Operation operation)
 {
-    Traced out{value, a.from};
+    Traced out{operation(a.value, b.value), a.from};
+    if (!std::isnan(a.low) || !std::isnan(b.low)) {
+        const Range x = a.range(), y = b.range();
+        const auto [low, high] = std::minmax({operation(x.low, y.low), operation(x.low, y.high),
+                                              operation(x.high, y.low), operation(x.high, y.high)});
+        out.low = low;
+        out.high = high;
+    }
     for (const Source& source : b.from)
         if (std::find(out.from.begin(), out.from.end(), source) == out.from.end())
             out.from.push_back(source);
@@ -40,6 +50,8 @@ constexpr std::array numbers{"seed",          "threads",         "n",
                              "vertices",      "ns_per_bound",    "level",
                              "bvs",           "mean_ratio",      "max_ratio",
                              "kdop",          "below_exact",     "ratio_to_double",
+                             "ns_per_bound_low", "ns_per_bound_high", "total_ms_low",
+                             "total_ms_high", "cpu_share", "load",
                              "frames",        "bodies",          "evaluate_ms",
                              "update_ms",     "query_ms",        "total_ms",
                              "pairs",         "pairs_differing", "megabytes_per_body",
@@ -103,13 +115,13 @@ double Record::number(const char* field) const
     return at_field != fields.end() && at_field->is_number() ? at_field->get<double>() : NAN;
 }
 
-Traced operator+(const Traced& a, const Traced& b) { return combined(a, b, a.value + b.value); }
-Traced operator-(const Traced& a, const Traced& b) { return combined(a, b, a.value - b.value); }
-Traced operator*(const Traced& a, const Traced& b) { return combined(a, b, a.value * b.value); }
-Traced operator/(const Traced& a, const Traced& b) { return combined(a, b, a.value / b.value); }
-Traced operator/(double a, const Traced& b) { return {a / b.value, b.from}; }
-Traced operator-(double a, const Traced& b) { return {a - b.value, b.from}; }
-Traced operator/(const Traced& a, double b) { return {a.value / b, a.from}; }
+Traced operator+(const Traced& a, const Traced& b) { return combined(a, b, std::plus<>()); }
+Traced operator-(const Traced& a, const Traced& b) { return combined(a, b, std::minus<>()); }
+Traced operator*(const Traced& a, const Traced& b) { return combined(a, b, std::multiplies<>()); }
+Traced operator/(const Traced& a, const Traced& b) { return combined(a, b, std::divides<>()); }
+Traced operator/(double a, const Traced& b) { return Traced{a, {}} / b; }
+Traced operator-(double a, const Traced& b) { return Traced{a, {}} - b; }
+Traced operator/(const Traced& a, double b) { return a / Traced{b, {}}; }
 
 Traced mean(const std::vector<Traced>& all)
 {
@@ -141,7 +153,10 @@ std::vector<const Record*> Results::where(const Json& fields) const
 Traced Results::number(const Record& record, const char* field)
 {
     const double value = record.number(field);
-    return std::isfinite(value) ? Traced{value, {record.at}} : Traced{};
+    if (!std::isfinite(value))
+        return {};
+    return {value, {record.at}, record.number((std::string(field) + "_low").c_str()),
+            record.number((std::string(field) + "_high").c_str())};
 }
 
 Traced Results::number(const Json& fields, const char* field) const

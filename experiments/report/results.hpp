@@ -10,6 +10,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "experiments/measure/verdict.hpp"
+
 namespace cinch {
 
 /// A line of a results file. Names of files are without folder and ending.
@@ -35,8 +37,10 @@ struct Record {
 struct Traced {
     double value = NAN;
     std::vector<Source> from;
+    double low = NAN, high = NAN; ///< of what was timed: between the quartiles; NaN where it is exact
 
     bool known() const { return std::isfinite(value); }
+    Range range() const { return std::isnan(low) ? Range(value) : Range(value, low, high); }
 };
 Traced operator+(const Traced& a, const Traced& b);
 Traced operator-(const Traced& a, const Traced& b);
@@ -59,6 +63,7 @@ public:
     std::vector<const Record*> where(const nlohmann::ordered_json& fields) const;
     /// A field of the first of them in which it is a number.
     Traced number(const nlohmann::ordered_json& fields, const char* field) const;
+    /// With its quartiles where the record has them: "FIELD_low" and "FIELD_high".
     static Traced number(const Record& record, const char* field);
 
 private:

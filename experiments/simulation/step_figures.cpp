@@ -36,7 +36,7 @@ StepFigures::Row measure_step(const TriangleMesh& mesh, std::size_t nodes, doubl
     integration.method = Integration::Method::explicit_euler;
     integration.step_s = dt;
     constexpr int steps = 100; // between two estimates of the stable step, whose cost is so shared
-    const std::vector<double> ns = race({[&] { ours.advance(steps * dt, integration); },
+    const RaceTimes times = race({[&] { ours.advance(steps * dt, integration); },
                                          [&] {
                                              for (int s = 0; s < steps; ++s)
                                                  plain.step(dt);
@@ -61,7 +61,7 @@ StepFigures::Row measure_step(const TriangleMesh& mesh, std::size_t nodes, doubl
     for (std::size_t i = 0; i < body.size(); ++i)
         off = std::max(off, (at(again.positions(), i) - reference.x[i]).norm());
     return {body.size(), static_cast<double>(body.neighbour.size()) / static_cast<double>(body.size()),
-            1e-3 * ns[0] / steps, 1e-3 * ns[1] / steps, off};
+            1e-3 * times.of(0).value / steps, 1e-3 * times.of(1).value / steps, times.ratio(1, 0), off};
 }
 
 void measure_evaluation(StepFigures& out, double seconds)
@@ -88,7 +88,7 @@ void measure_evaluation(StepFigures& out, double seconds)
         eigen.push_back(e);
     }
     std::vector<Vec3> ours(surface.mesh.vertices.size()), plain = ours;
-    const std::vector<double> ns =
+    const RaceTimes times =
         race({[&] { evaluate(maps, ours); }, [&] { evaluate_float(maps, ours); },
               [&] {
                   for (std::size_t k = 0; k < plain.size(); ++k) {
@@ -101,9 +101,11 @@ void measure_evaluation(StepFigures& out, double seconds)
                   }
               }},
              seconds);
-    out.evaluate_us = 1e-3 * ns[0];
-    out.evaluate_float_us = 1e-3 * ns[1];
-    out.evaluate_plain_us = 1e-3 * ns[2];
+    out.evaluate_us = 1e-3 * times.of(0).value;
+    out.evaluate_float_us = 1e-3 * times.of(1).value;
+    out.evaluate_plain_us = 1e-3 * times.of(2).value;
+    out.evaluate_ratio = times.ratio(2, 0);
+    out.evaluate_float_ratio = times.ratio(2, 1);
 }
 
 } // namespace
@@ -132,17 +134,17 @@ StepFigures measure_steps(double seconds)
     double off = 0;
     for (const StepFigures::Row& row : out.rows)
         off = std::max(off, row.off);
-    const double step = reference.plain_us / reference.step_us, evaluate = out.evaluate_plain_us / out.evaluate_us,
-                 evaluate_float = out.evaluate_plain_us / out.evaluate_float_us;
+    auto times = [](const Range& ratio) { return fmt::format("{:.2f}{}", ratio.value, mark(ratio)); };
     out.figures = {
-        {fmt::format("plain Eigen / substep, {:.0f} neighbours", reference.neighbours), fmt::format("{:.2f}", step),
-         ">= 5", step >= 5},
+        {fmt::format("plain Eigen / substep, {:.0f} neighbours", reference.neighbours), times(reference.ratio), ">= 5",
+         at_least(reference.ratio, 5)},
         {"difference of the two after 100 steps, m", fmt::format("{:.0e}", off), "<= 1e-12", off <= 1e-12},
         {"exponent of nodes x neighbours", fmt::format("{:.2f}", out.nodes_slope), "<= 1.1", out.nodes_slope <= 1.1},
         {"exponent of neighbours at 509 nodes", fmt::format("{:.2f}", out.neighbours_slope), "<= 1.1",
          out.neighbours_slope <= 1.1},
-        {"plain Eigen / surface in float, 30K", fmt::format("{:.2f}", evaluate_float), ">= 4", evaluate_float >= 4},
-        {"plain Eigen / surface in double, 30K", fmt::format("{:.2f}", evaluate), ">= 4", evaluate >= 4}};
+        {"plain Eigen / surface in float, 30K", times(out.evaluate_float_ratio), ">= 4",
+         at_least(out.evaluate_float_ratio, 4)},
+        {"plain Eigen / surface in double, 30K", times(out.evaluate_ratio), ">= 4", at_least(out.evaluate_ratio, 4)}};
     return out;
 }
 

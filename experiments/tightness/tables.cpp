@@ -164,13 +164,10 @@ std::vector<Json> records_of(const TightnessResult& result, const std::vector<Fi
             for (const std::string& name : result.methods)
                 for (std::size_t l = 0; l < run.levels.at(name).size(); ++l)
                     records.push_back(record(result, run, name, l));
-    for (const Figure& f : figures)
-        records.push_back({{"experiment", "tightness"},
-                           {"input", result.input},
-                           {"figure", f.what},
-                           {"measured", f.measured},
-                           {"target", f.target},
-                           {"reached", f.reached}});
+    for (const Figure& f : figures) {
+        records.push_back(record_of(f, "tightness"));
+        records.back()["input"] = result.input;
+    }
     return records;
 }
 

@@ -53,7 +53,26 @@ std::string inlined(std::string svg, const std::string& label)
     return svg.replace(0, 4, "<svg role=\"img\"");
 }
 
-const char* css_of(Verdict is) { return is == Verdict::same ? "same" : is == Verdict::differs ? "differs" : "unknown"; }
+const char* css_of(Verdict is)
+{
+    return is == Verdict::holds ? "same" : is == Verdict::fails ? "differs" : "unknown";
+}
+
+// The verdict in a word, what it rests on, and a sentence.
+std::string marked(const std::vector<Judgement>& on, const char* holds, const char* fails, const std::string& sentence)
+{
+    const Verdict is = verdict(on);
+    std::string names;
+    for (const Judgement& judgement : on)
+        names += fmt::format("{}{}:{}", names.empty() ? "" : " ", judgement.name, name_of(judgement.is));
+    return fmt::format("<strong class=\"{}\" data-verdict=\"{}\" data-on=\"{}\">{}</strong> {}", css_of(is),
+                       name_of(is), escaped(names),
+                       is == Verdict::holds          ? holds
+                       : is == Verdict::fails        ? fails
+                       : is == Verdict::inconclusive ? "Inconclusive: the rounds are too far apart."
+                                                     : "Not measured.",
+                       sentence);
+}
 
 std::string all_of(const std::vector<std::string>& parts)
 {
@@ -163,30 +182,35 @@ std::string table(const std::string& caption, const std::vector<std::string>& he
         caption, all_of(head_rows), all_of(blocks));
 }
 
-std::string verdict(Verdict is, const std::string& sentence)
+Judgement at_most(std::string name, const Traced& measured, double limit)
 {
-    return fmt::format("<strong class=\"{}\">{}</strong> {}", css_of(is),
-                       is == Verdict::same      ? "Same."
-                       : is == Verdict::differs ? "Differs."
-                                                : "Not measured.",
-                       sentence);
+    return {std::move(name), cinch::at_most(measured.range(), limit)};
 }
 
-std::string conclusion(std::size_t columns, Verdict is, const std::string& sentence)
+Judgement at_least(std::string name, const Traced& measured, double limit)
+{
+    return {std::move(name), cinch::at_least(measured.range(), limit)};
+}
+
+Verdict verdict(const std::vector<Judgement>& on)
+{
+    std::vector<Verdict> all;
+    for (const Judgement& judgement : on)
+        all.push_back(judgement.is);
+    return cinch::all_of(all);
+}
+
+std::string conclusion(std::size_t columns, const std::vector<Judgement>& on, const std::string& sentence)
 {
     return fmt::format("<tr class=\"why\"><td colspan=\"{}\"><div>{}</div></td></tr>\n", columns,
-                       verdict(is, sentence));
+                       marked(on, "Same.", "Differs.", sentence));
 }
 
-std::string claim(const std::string& says, const char* where, Verdict is, const std::string& sentence)
+std::string claim(const std::string& says, const char* where, const std::vector<Judgement>& on,
+                  const std::string& sentence)
 {
-    return fmt::format("<li class=\"{}\"><p class=\"says\">{} <cite>{}</cite></p>\n<p>{}</p></li>\n", css_of(is), says,
-                       where,
-                       fmt::format("<strong class=\"{}\">{}</strong> {}", css_of(is),
-                                   is == Verdict::same      ? "Confirmed."
-                                   : is == Verdict::differs ? "Not confirmed."
-                                                            : "Not measured.",
-                                   sentence));
+    return fmt::format("<li class=\"{}\"><p class=\"says\">{} <cite>{}</cite></p>\n<p>{}</p></li>\n",
+                       css_of(verdict(on)), says, where, marked(on, "Confirmed.", "Not confirmed.", sentence));
 }
 
 std::string claims(const std::vector<std::string>& all) { return "<ul class=\"claims\">\n" + all_of(all) + "</ul>\n"; }

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "experiments/measure/verdict.hpp"
 #include "experiments/report/chart.hpp"
 #include "experiments/report/paper_figures.hpp"
 #include "experiments/report/results.hpp"
@@ -38,14 +39,22 @@ std::string block(const std::vector<std::string>& rows, const char* css = "");
 std::string table(const std::string& caption, const std::vector<std::string>& head_rows,
                   const std::vector<std::string>& blocks);
 
-/// Whether our answer is the paper's.
-enum class Verdict { same, differs, unknown };
-/// A mark and a sentence, HTML.
-std::string verdict(Verdict is, const std::string& sentence);
+/// One statement about figures, by a name of its own on the page, and whether it holds. Tables and claims rest on these,
+/// so that they cannot say different things of one figure.
+struct Judgement {
+    std::string name;
+    Verdict is;
+};
+Judgement at_most(std::string name, const Traced& measured, double limit);
+Judgement at_least(std::string name, const Traced& measured, double limit);
+/// Together.
+Verdict verdict(const std::vector<Judgement>& on);
+
 /// The last row of a block: what its figures say. Over all columns.
-std::string conclusion(std::size_t columns, Verdict is, const std::string& sentence);
+std::string conclusion(std::size_t columns, const std::vector<Judgement>& on, const std::string& sentence);
 /// What the paper says, `where` it says so, and what ours says to it. `says` and `sentence` are HTML.
-std::string claim(const std::string& says, const char* where, Verdict is, const std::string& sentence);
+std::string claim(const std::string& says, const char* where, const std::vector<Judgement>& on,
+                  const std::string& sentence);
 std::string claims(const std::vector<std::string>& all);
 
 /// Charts as inline SVG, each as a figure with its caption (HTML) and the lines that it is drawn from. One that is

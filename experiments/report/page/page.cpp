@@ -39,22 +39,25 @@ std::vector<Section> sections_of(const Results& results)
 std::string claims_section(const std::vector<Section>& sections, bool unknown_too)
 {
     std::vector<std::string> items;
-    std::map<html::Verdict, std::size_t> count;
+    std::map<Verdict, std::size_t> count;
     for (const Section& section : sections)
         for (const Claim& claim : section.claims)
-            if (unknown_too || claim.is != html::Verdict::unknown) {
-                items.push_back(html::claim(claim.says, claim.where, claim.is, claim.answer));
-                ++count[claim.is];
+            if (unknown_too || claim.is() != Verdict::unknown) {
+                items.push_back(html::claim(claim.says, claim.where, claim.on, claim.answer));
+                ++count[claim.is()];
             }
     if (items.empty())
         return "";
-    std::string sum = fmt::format("{} of {} hold here", count[html::Verdict::same], items.size());
-    if (count[html::Verdict::differs])
-        sum += fmt::format(", {} {} not", count[html::Verdict::differs],
-                           count[html::Verdict::differs] == 1 ? "does" : "do");
-    if (count[html::Verdict::unknown])
-        sum += fmt::format(", {} {} not measured", count[html::Verdict::unknown],
-                           count[html::Verdict::unknown] == 1 ? "is" : "are");
+    std::string sum = fmt::format("{} of {} hold here", count[Verdict::holds], items.size());
+    if (count[Verdict::fails])
+        sum += fmt::format(", {} {} not", count[Verdict::fails],
+                           count[Verdict::fails] == 1 ? "does" : "do");
+    if (count[Verdict::unknown])
+        sum += fmt::format(", {} {} not measured", count[Verdict::unknown],
+                           count[Verdict::unknown] == 1 ? "is" : "are");
+    if (count[Verdict::inconclusive])
+        sum += fmt::format(", {} {} inconclusive", count[Verdict::inconclusive],
+                           count[Verdict::inconclusive] == 1 ? "is" : "are");
     return html::section("claims", "What the paper says, and whether it holds here",
                          html::paragraph(sum + ". Each answer is computed from the results below.") +
                              html::claims(items));

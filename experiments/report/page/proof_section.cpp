@@ -12,7 +12,6 @@ using html::cell;
 using html::escaped;
 using html::figure;
 using html::head_cell;
-using html::Verdict;
 
 /// Last records of `cinch verify`: what was proven of all bounds.
 std::vector<const Record*> totals(const Results& results)
@@ -126,9 +125,9 @@ Section proof_section(const Results& results)
     }
     const bool any = bounds.known() && bounds.value > 0;
     section.claims.push_back({"The bounds are conservative: no vertex is ever outside.", "Appendix A",
-                              !any                           ? Verdict::unknown
-                              : bounds.value == proven.value ? Verdict::same
-                                                             : Verdict::differs,
+                              {{"conservative", !any                           ? Verdict::unknown
+                                                : bounds.value == proven.value ? Verdict::holds
+                                                                               : Verdict::fails}},
                               any ? fmt::format("{} of {} bounds of this program are proven in exact arithmetic, of "
                                                 "refits and of those that collision detection reads.",
                                                 count(proven), count(bounds))
@@ -137,7 +136,7 @@ Section proof_section(const Results& results)
     if (sums.rows.value > 0)
         section.claims.push_back(
             {"Eq. 12 is the extreme corner of the limited convex weight space.", "Section 5.2",
-             sums.exact.value == sums.rows.value ? Verdict::same : Verdict::differs,
+             {{"eq12-exact", sums.exact.value == sums.rows.value ? Verdict::holds : Verdict::fails}},
              fmt::format(
                  "It is the exact maximum in {} of {} reference cases. In the others it is above: more than two "
                  "weights lie off their minimum at the true corner, which Eq. 12’s one maximal weight does not "

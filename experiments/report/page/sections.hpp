@@ -12,8 +12,10 @@ namespace cinch {
 struct Claim {
     std::string says;  ///< HTML
     const char* where; ///< in the paper
-    html::Verdict is;
-    std::string answer; ///< HTML, with figures that link to their lines
+    std::vector<html::Judgement> on;
+    std::string answer; ///< HTML, with figures that link to their lines; empty: not measured
+
+    Verdict is() const { return html::verdict(on); }
 };
 
 /// A part of the page. An empty body: the results have nothing for it.
