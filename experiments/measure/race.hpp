@@ -27,16 +27,20 @@ const char* mark(const Range& range);
 
 /// Nanoseconds per call of each contestant, round by round.
 struct RaceTimes : Load {
-    std::vector<std::vector<double>> ns; ///< by contestant and round
+    std::vector<std::vector<double>> ns; ///< by contestant and round; NaN where it sat one out
 
-    Range of(std::size_t contestant) const { return range_of(ns[contestant]); }
+    Range of(std::size_t contestant) const;
     /// Over another contestant, in the same rounds: what slows both down shows in neither.
     Range ratio(std::size_t contestant, std::size_t base) const;
+
+private:
+    Range known(std::vector<double> values) const;
 };
 
 /// They take turns in short batches, so that a change of the machine's speed meets all of them alike; measured in time
 /// of this thread on a core, so that other processes that take it away do not count. For calls that use this thread
-/// alone. Together about `seconds` long; each runs at least three batches. Throws Interrupted between batches.
+/// alone. Together about `seconds` long; each runs at least five batches, and those of which one takes
+/// long not many more. Throws Interrupted between batches.
 RaceTimes race(const std::vector<std::function<void()>>& contestants, double seconds);
 
 /// Slope of log(ns) over log(size), least squares.

@@ -19,6 +19,7 @@ class Page(html.parser.HTMLParser):
     def __init__(self, text):
         super().__init__()
         self.ids, self.links, self.charts, self.text, self.remote = [], [], 0, [], []
+        self.verdicts, self.shown = [], None  # (of it, what it rests on, in what words)
         self.feed(text)
 
     def handle_starttag(self, tag, attributes):
@@ -31,8 +32,29 @@ class Page(html.parser.HTMLParser):
             self.remote.append(values)
         self.charts += tag == "figure"
 
+        if "data-verdict" in values:
+            self.shown = values
+
     def handle_data(self, data):
         self.text.append(data)
+        if self.shown:
+            self.verdicts.append((self.shown["data-verdict"], self.shown["data-on"].split(), data))
+            self.shown = None
+
+
+def check_verdicts(page):
+    """No claim and table say different things of one statement, and each says what follows from its statements."""
+    words = {"holds": ("Same.", "Confirmed."), "fails": ("Differs.", "Not confirmed."),
+             "inconclusive": ("Inconclusive: the rounds are too far apart.",) * 2, "unknown": ("Not measured.",) * 2}
+    said, in_tables, in_claims = {}, set(), set()
+    for verdict, on, text in page.verdicts:
+        statements = dict(one.rsplit(":", 1) for one in on)
+        follows = next((worst for worst in ("fails", "inconclusive", "holds") if worst in statements.values()), "unknown")
+        assert verdict == follows and text in words[verdict], (verdict, on, text)
+        (in_tables if text in ("Same.", "Differs.") else in_claims).update(statements)
+        for name, is_so in statements.items():
+            assert said.setdefault(name, is_so) == is_so, (name, said[name], is_so)
+    assert len(said) >= 25 and len(in_tables & in_claims) >= 8, (len(said), in_tables & in_claims)
 
 
 def main():
@@ -89,6 +111,7 @@ def main():
     for part in ("claims", "table-1", "fig-5", "table-4", "cost", "proof", "provenance", "lines"):
         assert part in ids, f"the page has no part '{part}'"
     assert page.charts >= 8, page.charts
+    check_verdicts(page)
     words = "".join(page.text)
     assert "Left out:" not in words and "A check failed:" not in words
 
