@@ -41,9 +41,10 @@ void add_verify(CLI::App& app, VerifyOptions& o)
     option("--threads", o.threads, "threads [all cores]")->check(CLI::Range(1, 1024))->option_text("N");
     add_shards(command, o.shards);
     add_output(command, o.output);
-    option("--certificate", o.certificate,
-           "write a proof of every bound, for experiments/check_certificate.py; compressed if it ends in .gz; with --out "
-           "a folder in DIR, of a file per frame, which 'cinch merge DIR' ends")
+    option(
+        "--certificate", o.certificate,
+        "write a proof of every bound, for experiments/check_certificate.py; compressed if it ends in .gz; with --out "
+        "a folder in DIR, of a file per frame, which 'cinch merge DIR' ends")
         ->option_text("FILE");
     option("--vipr", o.vipr,
            "write single bounds of the last frame (first BV of each level) as VIPR files, for viprchk")

@@ -29,8 +29,16 @@ void add_output(CLI::App& command, OutputOptions& o, Draws draws)
 {
     CLI::Option* json = command.add_flag("--json", o.json, "JSON Lines on standard output and nothing else");
     command.add_flag("--csv", o.csv, "the same as comma-separated values")->excludes(json);
-    if (draws == Draws::charts)
-        command.add_option("--plot", o.plot, wrapped("draw charts as SVG, by gnuplot"))->option_text("FILE.svg");
+    if (draws == Draws::charts) {
+        command
+            .add_option(
+                "--plot", o.plot,
+                wrapped("draw charts by gnuplot, as .svg, .pdf or .png: the first as FILE, the next as FILE-2 ..."))
+            ->option_text("FILE");
+        command
+            .add_option("--plot-data", o.plot_data, wrapped("write the points of the charts as comma-separated values"))
+            ->option_text("FILE.csv");
+    }
     command
         .add_option("--report", o.report,
                     wrapped("write a page with the results, beside the paper's where it has them"))
@@ -83,9 +91,9 @@ void add_shards(CLI::App& command, ShardOptions& o)
 void add_input(CLI::App& command, InputOptions& o, InputLists* lists)
 {
     const auto option = options_of(command);
-    const std::string inputs = fmt::format(
-        "a shape ({}), a scene ({}, or a .json file), a mesh ({}) or a skinned character (.glb, .gltf)",
-        fmt::join(shape_names(), ", "), fmt::join(shipped_scenes(), ", "), mesh_extensions());
+    const std::string inputs =
+        fmt::format("a shape ({}), a scene ({}, or a .json file), a mesh ({}) or a skinned character (.glb, .gltf)",
+                    fmt::join(shape_names(), ", "), fmt::join(shipped_scenes(), ", "), mesh_extensions());
     const std::string nodes = "simulation nodes sampled in the volume [the paper's number for a shape, 100 for a mesh]";
     const std::string motions = fmt::format("scripted motion: {} [strong]", motion_names);
     if (lists) {

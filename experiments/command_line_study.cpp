@@ -16,7 +16,7 @@ void add_study(CLI::App& app, StudyOptions& o)
     option("--threads", o.threads, "threads [all cores]; the rows are the same")
         ->check(CLI::Range(1, 1024))
         ->option_text("N");
-    add_output(command, o.output, Draws::nothing);
+    add_output(command, o.output);
     command.footer(R"(A plan has any of these fields; each may be one value or a list:
   inputs      shapes, files, patterns ("meshes/*.off"), scenes  ["brain"]
   nodes       simulation nodes                                  [as usual]

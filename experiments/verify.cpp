@@ -210,11 +210,10 @@ void verify_body(const std::shared_ptr<const Inputs>& inputs, const Input& input
     const std::unique_ptr<PreparedInput> prepared = prepare(inputs, input, options);
     std::optional<exact::CertificateWriter> proof;
     if (certificate)
-        proof.emplace(input.surface, prepared->bvh, claim_of(input, options),
-                      [=](std::string_view text) {
-                          throw_if_interrupted(); // then none is written
-                          certificate->line(text);
-                      });
+        proof.emplace(input.surface, prepared->bvh, claim_of(input, options), [=](std::string_view text) {
+            throw_if_interrupted(); // then none is written
+            certificate->line(text);
+        });
     const std::size_t before = totals.frames;
     Progress progress("verifying frames", totals.frames_wanted);
     std::vector<double> supports;
@@ -262,8 +261,7 @@ int verify_in_cells(const std::shared_ptr<const Inputs>& inputs, const VerifyOpt
             const FrameSink proof = [&](auto&&... of_frame) {
                 counts = parts->write_frame(claim_of(input, options), f, of_frame...);
             };
-            VerifyTotals frame =
-                verify_frame(*prepared, input, options, f, parts ? proof : FrameSink(), supports);
+            VerifyTotals frame = verify_frame(*prepared, input, options, f, parts ? proof : FrameSink(), supports);
             if (f + 1 == input.clip.frame_count())
                 explain_last_frame(input, prepared->bvh, own, f, supports, frame);
             frame.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -304,8 +302,8 @@ int verify(const VerifyOptions& given)
             throw InputError("--out goes neither with --update and --remember, where frames depend on those before "
                              "them, nor with --vipr");
         if (options.certificate.find('/') != std::string::npos || options.certificate.starts_with('.'))
-            throw InputError(fmt::format("--certificate {}: with --out it names a folder in that one",
-                                         options.certificate));
+            throw InputError(
+                fmt::format("--certificate {}: with --out it names a folder in that one", options.certificate));
         catch_interrupt();
         return verify_in_cells(shared, options);
     }

@@ -26,7 +26,9 @@ int view(const ViewOptions& options)
     std::optional<WholeFile> file;
     if (!options.report.empty())
         file.emplace(options.report);
-    RecordOutput output({options.json, false, {}, {}}, provenance(threads, options.request.seed));
+    OutputOptions records;
+    records.json = options.json;
+    RecordOutput output(records, provenance(threads, options.request.seed));
     std::vector<Json> views;
     std::vector<ViewRequest> wanted = options.request.scene.empty() ? report_views() : std::vector{options.request};
     for (ViewRequest& request : wanted)

@@ -126,9 +126,9 @@ Json plan_of(const CollideOptions& options, const std::vector<SceneCell>& cells,
     for (const SceneCell& cell : cells)
         if (std::filesystem::is_regular_file(cell.scene))
             sums[cell.scene] = checksum(read_bytes(cell.scene));
-    return {{"scenes", names},           {"backends", backends},        {"frames", options.frames},
-            {"rounds", options.rounds},  {"threads", options.threads},  {"cold", options.cold},
-            {"seed", options.seed},      {"checksums", sums}};
+    return {{"scenes", names},          {"backends", backends},       {"frames", options.frames},
+            {"rounds", options.rounds}, {"threads", options.threads}, {"cold", options.cold},
+            {"seed", options.seed},     {"checksums", sums}};
 }
 
 std::vector<SceneResult> results_of(const Merged& all)

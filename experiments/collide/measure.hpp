@@ -7,13 +7,14 @@
 namespace cinch {
 
 /// What one backend did on a scene. On one thread times are those that the process had a core for, so that other
-/// processes that take it away do not count. Times are medians over the frames, each frame's the median over the rounds.
+/// processes that take it away do not count. Times are medians over the frames, each frame's the median over the
+/// rounds.
 struct Measured {
     std::string backend;
     double evaluate_ms = 0, update_ms = 0, query_ms = 0, total_ms = 0;
     double total_ms_low = 0, total_ms_high = 0; ///< of the rounds, each one's median over its frames
-    double pairs = 0;       ///< median per frame
-    std::size_t frames = 0; ///< measured
+    double pairs = 0;                           ///< median per frame
+    std::size_t frames = 0;                     ///< measured
     std::size_t frames_wanted = 0, rounds = 0,
                 rounds_wanted = 0; ///< more than measured after an interrupt; a slow backend wants one round
 

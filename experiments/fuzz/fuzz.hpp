@@ -15,9 +15,10 @@ struct FuzzOptions {
     std::optional<std::uint64_t> cases; ///< a limit, if given; of this shard, those of a resumed state included
     std::uint64_t seed = 0;
     std::string family; ///< empty: all in turn
-    ShardOptions shards; ///< without a folder: every N-th case, from the I-th on; with one, a campaign of `cases` in all
-    std::string resume;  ///< state file; empty: none
-    std::string corpus;  ///< where shrunk failures go; empty: nowhere, or into the folder
+    ShardOptions
+        shards;         ///< without a folder: every N-th case, from the I-th on; with one, a campaign of `cases` in all
+    std::string resume; ///< state file; empty: none
+    std::string corpus; ///< where shrunk failures go; empty: nowhere, or into the folder
     int threads = 0;
     OutputOptions output;
     Defect defect = Defect::none;

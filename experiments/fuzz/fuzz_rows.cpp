@@ -111,8 +111,7 @@ int print_fuzz(const Merged& all, const OutputOptions& options, const std::strin
     const bool is_complete = totals.cases == plan.cases;
     output.set({0, 0, is_complete, is_complete ? "" : interrupted_after(totals.cases, plan.cases, "cases")});
     for (const auto& [index, family] : totals.first) {
-        const FuzzFailure failure =
-            shrink_and_save(draw_case(plan.seed, index, plan.family), plan.defect, plan.corpus);
+        const FuzzFailure failure = shrink_and_save(draw_case(plan.seed, index, plan.family), plan.defect, plan.corpus);
         output.add(record_of(failure, index));
         if (!options.records_only())
             print(failure, index);
@@ -126,12 +125,12 @@ int print_fuzz(const Merged& all, const OutputOptions& options, const std::strin
                 {"shards", 1}});
     output.finish();
     if (!options.records_only())
-        fmt::print("{}{} cases, {} violations\n{} of work, {} cases per second\n{}\n",
-                   is_complete ? "" : interrupted_after(totals.cases, plan.cases, "cases") + "\n", grouped(totals.cases),
-                   grouped(totals.violations), duration(totals.seconds),
-                   grouped(static_cast<std::size_t>(static_cast<double>(totals.cases) /
-                                                    std::max(totals.seconds, 1e-3))),
-                   describe(from));
+        fmt::print(
+            "{}{} cases, {} violations\n{} of work, {} cases per second\n{}\n",
+            is_complete ? "" : interrupted_after(totals.cases, plan.cases, "cases") + "\n", grouped(totals.cases),
+            grouped(totals.violations), duration(totals.seconds),
+            grouped(static_cast<std::size_t>(static_cast<double>(totals.cases) / std::max(totals.seconds, 1e-3))),
+            describe(from));
     return totals.violations ? 1 : 0;
 }
 

@@ -96,9 +96,8 @@ RaceTimes race(const std::vector<std::function<void()>>& contestants, double sec
         const bool with_slow = r * slow_rounds / rounds != (r + 1) * slow_rounds / rounds; // evenly among them
         for (std::size_t i = 0; i < contestants.size(); ++i) {
             throw_if_interrupted();
-            out.ns[i].push_back(is_slow[i] && !with_slow
-                                    ? NAN
-                                    : 1e9 * timed(contestants[i], times[i]) / static_cast<double>(times[i]));
+            out.ns[i].push_back(
+                is_slow[i] && !with_slow ? NAN : 1e9 * timed(contestants[i], times[i]) / static_cast<double>(times[i]));
         }
     }
     const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -127,15 +126,14 @@ nlohmann::ordered_json record_of(const Figure& f, const char* experiment)
     nlohmann::ordered_json reached;
     if (f.verdict == Verdict::holds || f.verdict == Verdict::fails)
         reached = f.verdict == Verdict::holds;
-    return {{"experiment", experiment}, {"figure", f.what},    {"measured", f.measured},
+    return {{"experiment", experiment}, {"figure", f.what},   {"measured", f.measured},
             {"target", f.target},       {"reached", reached}, {"verdict", name_of(f.verdict)}};
 }
 
 void print(const std::vector<Figure>& figures)
 {
     for (const Figure& f : figures)
-        fmt::print("{:<44} {:>7}  target {:<7} {}\n", f.what, f.measured, f.target,
-                   said_of_target(f.verdict));
+        fmt::print("{:<44} {:>7}  target {:<7} {}\n", f.what, f.measured, f.target, said_of_target(f.verdict));
 }
 
 } // namespace cinch

@@ -6,6 +6,9 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <set>
+#include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -29,24 +32,110 @@ std::string quoted(const std::string& text)
     return out + "'";
 }
 
+// The last part of a path: titles and names say what is drawn, not where it lies.
+std::string base_name(const std::string& text)
+{
+    std::string out;
+    for (std::size_t at = 0; at < text.size();) { // word by word
+        const std::size_t end = std::min(text.find(' ', at), text.size());
+        const std::string word = text.substr(at, end - at);
+        const std::size_t slash = word.find_last_of('/');
+        const bool is_path = slash != std::string::npos && word.find('.', slash) != std::string::npos;
+        out += (is_path ? word.substr(slash + 1) : word) + (end < text.size() ? " " : "");
+        at = end + 1;
+    }
+    return out;
+}
+
+template <class Take> void each_point(const Series& series, const Take& take)
+{
+    for (std::size_t p = 0; p < series.x.size(); ++p)
+        if (std::isfinite(series.x[p]) && std::isfinite(series.y[p]))
+            take(p);
+}
+
+// "set xtics (...)" of a logarithmic axis: gnuplot's own are at powers of ten alone, which may lie outside. The values
+// themselves where they are few; else 1, 2, 5 of each power, and more where there is one power or less.
+std::string log_tics(const char* axis, const Chart& chart, std::vector<double> Series::*values)
+{
+    std::set<double> all;
+    for (const Series& series : chart.series)
+        for (const double value : series.*values)
+            if (std::isfinite(value) && value > 0)
+                all.insert(value);
+    if (all.empty())
+        return "";
+    std::string list;
+    auto tic = [&](double at) { list += fmt::format("{}{:.6g}", list.empty() ? "" : ", ", at); };
+    const bool is_x = *axis == 'x';
+    if (is_x && all.size() <= 10) {
+        for (const double value : all)
+            tic(value);
+        return fmt::format("set {}tics ({})\n", axis, list);
+    }
+    const double least = *all.begin() / 1.2, greatest = *all.rbegin() * 1.2, decades = std::log10(greatest / least);
+    if (decades > 4)
+        return fmt::format("set {}tics autofreq\n", axis);
+    const std::vector<double> steps = decades > 2   ? std::vector<double>{1, 3}
+                                      : decades > 1 ? std::vector<double>{1, 2, 5}
+                                                    : std::vector<double>{1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8};
+    for (double power = std::pow(10, std::floor(std::log10(least))); power <= greatest; power *= 10)
+        for (const double step : steps)
+            if (step * power >= least && step * power <= greatest)
+                tic(step * power);
+    return fmt::format("set {}tics ({})\n", axis, list);
+}
+
 std::string script_of(const Chart& chart)
 {
     std::string script = fmt::format("set title {} noenhanced\nset xlabel {} noenhanced\nset ylabel {} "
-                                     "noenhanced\nunset logscale\n{}{}set autoscale\nplot ",
-                                     quoted(chart.title), quoted(chart.x_label), quoted(chart.y_label),
-                                     chart.log_x ? "set logscale x\n" : "", chart.log_y ? "set logscale y\n" : "");
+                                     "noenhanced\n{}{}set autoscale fix\nset offsets graph 0.02, graph 0.02, graph "
+                                     "0.05, graph 0.05\nplot ",
+                                     quoted(base_name(chart.title)), quoted(chart.x_label), quoted(chart.y_label),
+                                     chart.log_x ? "set logscale x\n" + log_tics("x", chart, &Series::x) : "",
+                                     chart.log_y ? "set logscale y\n" + log_tics("y", chart, &Series::y) : "");
     std::string points;
     for (std::size_t i = 0; i < chart.series.size(); ++i) {
         const Series& series = chart.series[i];
-        script += fmt::format("{}'-' with {} lw 2 lc rgb '{}' pt {} ps {} title {} noenhanced", i ? ", " : "",
-                              series.points_only ? "points" : "linespoints", colours[i % colours.size()],
-                              marks[i % marks.size()], series.points_only ? 0.5 : 0.6, quoted(series.name));
-        for (std::size_t p = 0; p < series.x.size(); ++p)
-            if (std::isfinite(series.x[p]) && std::isfinite(series.y[p]))
-                points += fmt::format("{:.9g} {:.9g}\n", series.x[p], series.y[p]);
+        const char* colour = colours[i % colours.size()];
+        if (!series.low.empty()) {
+            script +=
+                fmt::format("'-' with filledcurves fs transparent solid 0.18 noborder lc rgb '{}' notitle, ", colour);
+            each_point(series, [&](std::size_t p) {
+                points += fmt::format("{:.9g} {:.9g} {:.9g}\n", series.x[p], series.low[p], series.high[p]);
+            });
+            points += "e\n";
+        }
+        script += fmt::format("'-' with {} lw 2 lc rgb '{}' pt {} ps {} title {} noenhanced{}",
+                              series.points_only ? "points" : "linespoints", colour, marks[i % marks.size()],
+                              series.points_only ? 0.5 : 0.6, quoted(base_name(series.name)),
+                              i + 1 < chart.series.size() ? ", " : "");
+        each_point(series, [&](std::size_t p) { points += fmt::format("{:.9g} {:.9g}\n", series.x[p], series.y[p]); });
         points += "e\n";
     }
     return script + "\n" + points;
+}
+
+const char* terminal_of(Picture picture)
+{
+    switch (picture) {
+    case Picture::svg:
+        return "svg size 760,430 dynamic enhanced background '#ffffff' font 'sans-serif,15'";
+    case Picture::pdf:
+        return "pdfcairo size 6in,3.4in enhanced font 'sans-serif,11'";
+    case Picture::png:
+        return "pngcairo size 1520,860 enhanced background '#ffffff' font 'sans-serif,22' linewidth 2 pointscale 2.5";
+    }
+    return "";
+}
+
+bool is_whole(const std::string& picture, Picture as)
+{
+    using namespace std::string_view_literals;
+    return as == Picture::svg ? picture.ends_with("</svg>\n\n")
+           : as == Picture::pdf
+               ? picture.starts_with("%PDF-") && picture.find("%%EOF", picture.size() - 32) != picture.npos
+               : picture.ends_with("IEND\xae\x42\x60\x82"sv);
 }
 
 } // namespace
@@ -57,20 +146,45 @@ void require_gnuplot(const std::string& option)
         throw InputError(option + " needs gnuplot; on Debian: apt-get install gnuplot-nox");
 }
 
-std::string svg(const std::vector<Chart>& charts, const std::string& note)
+Picture picture_of(const std::string& file)
+{
+    constexpr std::array known{std::pair{".svg", Picture::svg}, std::pair{".pdf", Picture::pdf},
+                               std::pair{".png", Picture::png}};
+    for (const auto& [end, picture] : known)
+        if (file.ends_with(end))
+            return picture;
+    throw InputError::in_file(file, "pictures are .svg, .pdf or .png");
+}
+
+std::string data_of(const std::vector<Chart>& charts)
+{
+    auto field = [](const std::string& text) {
+        std::string out = "\"";
+        for (const char c : text)
+            out += c == '"' ? std::string("\"\"") : std::string(1, c);
+        return out + '"';
+    };
+    std::string out = "chart,series,x,y,low,high\n";
+    for (const Chart& chart : charts)
+        for (const Series& series : chart.series)
+            each_point(series, [&](std::size_t p) {
+                out += fmt::format("{},{},{},{},{},{}\n", field(chart.title), field(series.name), series.x[p],
+                                   series.y[p], series.low.empty() ? "" : fmt::format("{}", series.low[p]),
+                                   series.high.empty() ? "" : fmt::format("{}", series.high[p]));
+            });
+    return out;
+}
+
+std::string drawn(const Chart& chart, Picture as, const std::string& note)
 {
     std::string script =
-        fmt::format("set encoding utf8\n"
-                    "set terminal svg size 760,{} dynamic enhanced background '#ffffff' font 'sans-serif,15'\n"
-                    "set multiplot layout {},1\nset grid lc rgb '#dddddd'\nset border lc rgb '#555555'\nset key "
-                    "outside bottom center horizontal samplen 1.5 spacing 1.15 font ',13'\n",
-                    430 * charts.size(), charts.size());
+        fmt::format("set encoding utf8\nset terminal {}\nset grid lc rgb '#dddddd'\n"
+                    "set border lc rgb '#555555'\nset key outside bottom center horizontal samplen 1.5 "
+                    "spacing 1.15\n",
+                    terminal_of(as));
     if (!note.empty())
-        script += fmt::format("set label 1 {} at screen 0.01,0.992 left noenhanced font ',13' tc rgb '#b3261e'\n",
-                              quoted(note));
-    for (const Chart& chart : charts)
-        script += script_of(chart) + "unset label 1\n";
-    script += "unset multiplot\n";
+        script += fmt::format("set label 1 {} at screen 0.01,0.98 left noenhanced tc rgb '#b3261e'\n", quoted(note));
+    script += script_of(chart);
     std::string name = (std::filesystem::temp_directory_path() / "cinch-XXXXXX").string();
     const int file = mkstemp(name.data());
     if (file < 0)
@@ -85,11 +199,11 @@ std::string svg(const std::vector<Chart>& charts, const std::string& note)
         for (std::size_t n; (n = std::fread(part.data(), 1, part.size(), gnuplot)) > 0;)
             out.append(part.data(), n);
     }
-    const bool drawn = gnuplot && pclose(gnuplot) == 0 && out.ends_with("</svg>\n\n");
+    const bool is_drawn = gnuplot && pclose(gnuplot) == 0 && is_whole(out, as);
     std::error_code ignored;
     std::filesystem::remove(name, ignored);
-    if (!drawn)
-        throw InputError("gnuplot could not draw '" + (charts.empty() ? std::string() : charts.front().title) + "'");
+    if (!is_drawn)
+        throw InputError("gnuplot could not draw '" + chart.title + "'");
     return out;
 }
 

@@ -90,9 +90,12 @@ RecordOutput::RecordOutput(const OutputOptions& options, const Provenance& from)
     : options_(options), from_(to_json(from))
 {
     if (!options.plot.empty()) {
+        picture_of(options.plot);
         require_gnuplot("--plot");
         plot_.emplace(options.plot);
     }
+    if (!options.plot_data.empty())
+        plot_data_.emplace(options.plot_data);
     if (!options.report.empty()) {
         require_gnuplot("--report");
         page_.emplace(options.report);
@@ -110,7 +113,7 @@ void RecordOutput::add(const Json& record)
           std::pair("complete", Json(completeness_.complete))})
         if (!line.contains(name))
             line[name] = value;
-    if (options_.csv || plot_ || page_)
+    if (options_.csv || plot_ || plot_data_ || page_)
         records_.push_back(line);
     if (!options_.json)
         return;
@@ -124,23 +127,39 @@ void RecordOutput::add_all(const std::vector<Json>& records)
         add(record);
 }
 
+void RecordOutput::draw(const std::vector<Chart>& charts)
+{
+    if (plot_data_) {
+        plot_data_->write(data_of(charts));
+        plot_data_->commit();
+    }
+    if (!plot_ || charts.empty())
+        return;
+    const Picture picture = picture_of(options_.plot);
+    plot_->write(drawn(charts[0], picture, completeness_.note));
+    plot_->commit();
+    const std::size_t dot = options_.plot.rfind('.');
+    for (std::size_t i = 1; i < charts.size(); ++i) {
+        const std::string name = fmt::format("{}-{}{}", options_.plot.substr(0, dot), i + 1, options_.plot.substr(dot));
+        write_whole(name, drawn(charts[i], picture, completeness_.note));
+        fmt::print(stderr, "{}: {}\n", name, charts[i].title);
+    }
+}
+
 void RecordOutput::finish()
 {
     if (options_.csv)
         print_csv(records_);
     std::fflush(stdout);
-    if (!plot_ && !page_)
+    if (!plot_ && !plot_data_ && !page_)
         return;
     const Results results = results_of(records_, from_);
-    if (plot_) {
-        std::vector<Chart> charts;
-        for (const html::ChartFigure& chart : charts_of(results))
+    std::vector<Chart> charts = charts_;
+    for (const html::ChartFigure& chart : charts_of(results))
+        if (std::any_of(chart.chart.series.begin(), chart.chart.series.end(),
+                        [](const Series& series) { return !series.x.empty(); }))
             charts.push_back(chart.chart);
-        if (!charts.empty() || completeness_.complete) { // else nothing has been measured yet
-            plot_->write(svg(charts, completeness_.note));
-            plot_->commit();
-        }
-    }
+    draw(charts);
     if (page_) {
         page_->write(command_page(results, completeness_.note));
         page_->commit();

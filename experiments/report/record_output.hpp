@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "experiments/report/chart.hpp"
 #include "experiments/report/provenance.hpp"
 #include "experiments/report/whole_file.hpp"
 
@@ -15,7 +16,8 @@ namespace cinch {
 /// What commands put out besides what they print for people.
 struct OutputOptions {
     bool json = false, csv = false; ///< records on standard output and nothing else
-    std::string plot;               ///< SVG file to draw; empty: none
+    std::string plot;               ///< picture to draw (.svg, .pdf, .png), further charts as NAME-2 ...; empty: none
+    std::string plot_data;          ///< CSV file with the points of all charts; empty: none
     std::string report;             ///< HTML page to write; empty: none
 
     bool records_only() const { return json || csv; }
@@ -50,6 +52,8 @@ public:
     void describe(const nlohmann::ordered_json& input);
     void add(const nlohmann::ordered_json& record);
     void add_all(const std::vector<nlohmann::ordered_json>& records);
+    /// More charts than those of the records.
+    void add_chart(const Chart& chart) { charts_.push_back(chart); }
     /// Writes what has not been printed yet. Without it charts and page stay as they were.
     void finish();
 
@@ -58,8 +62,11 @@ private:
     nlohmann::ordered_json input_{{"partial", false}, {"missing", nlohmann::ordered_json::array()}};
     nlohmann::ordered_json from_;
     Completeness completeness_;
+    void draw(const std::vector<Chart>& charts);
+
     std::vector<nlohmann::ordered_json> records_;
-    std::optional<WholeFile> plot_, page_;
+    std::vector<Chart> charts_;
+    std::optional<WholeFile> plot_, plot_data_, page_;
 };
 
 /// A record of this provenance, as one line of text.

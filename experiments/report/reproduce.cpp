@@ -77,9 +77,9 @@ Outcome run(const Stage& stage, const ReproduceOptions& options)
                    part = fs::path(options.out) / (stage.name + ".part");
     const auto start = std::chrono::steady_clock::now();
     std::vector<std::string> arguments = arguments_of(stage, options.quick, options.seed);
-    const fs::path cells = fs::path(options.out) / fmt::format("{}-{}-{:016x}.cells", stage.name,
-                                                               provenance(1, 0).commit,
-                                                               checksum(command_of(arguments)));
+    const fs::path cells =
+        fs::path(options.out) /
+        fmt::format("{}-{}-{:016x}.cells", stage.name, provenance(1, 0).commit, checksum(command_of(arguments)));
     if (stage.runs_in_cells())
         arguments.insert(arguments.end(), {"--out", cells.string()});
     const int status = run_child(arguments, part);
@@ -234,10 +234,10 @@ int merge_results(const std::string& folder)
             !is_stored(fs::path(folder) / (stage.name + ".jsonl"), stage, options))
             missing.push_back(stage.name);
     if (!missing.empty())
-        throw InputError::in_file(folder, fmt::format("lacks {}; 'cinch reproduce{}{} --out {}' runs what is missing",
-                                                      fmt::join(missing, ", "), options.quick ? " --quick" : "",
-                                                      options.seed ? fmt::format(" --seed {}", options.seed) : "",
-                                                      folder));
+        throw InputError::in_file(folder,
+                                  fmt::format("lacks {}; 'cinch reproduce{}{} --out {}' runs what is missing",
+                                              fmt::join(missing, ", "), options.quick ? " --quick" : "",
+                                              options.seed ? fmt::format(" --seed {}", options.seed) : "", folder));
     return report({folder, ""});
 }
 

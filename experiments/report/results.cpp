@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <fstream>
+#include <functional>
 
 #include <fmt/format.h>
 
@@ -22,8 +22,8 @@ template <class Operation> Traced combined(const Traced& a, const Traced& b, Ope
     Traced out{operation(a.value, b.value), a.from};
     if (!std::isnan(a.low) || !std::isnan(b.low)) {
         const Range x = a.range(), y = b.range();
-        const auto [low, high] = std::minmax({operation(x.low, y.low), operation(x.low, y.high),
-                                              operation(x.high, y.low), operation(x.high, y.high)});
+        const auto [low, high] = std::minmax(
+            {operation(x.low, y.low), operation(x.low, y.high), operation(x.high, y.low), operation(x.high, y.high)});
         out.low = low;
         out.high = high;
     }
@@ -46,19 +46,45 @@ template <class Better> Traced extreme(const std::vector<Traced>& all, Better be
 constexpr std::array texts{"experiment", "command",   "commit", "version", "cpu",        "simd_target",
                            "method",     "precision", "input",  "motion",  "arithmetic", "guarantee",
                            "scene",      "backend",   "file",   "figure",  "stage",      "finished"};
-constexpr std::array numbers{"seed",          "threads",         "n",
-                             "vertices",      "ns_per_bound",    "level",
-                             "bvs",           "mean_ratio",      "max_ratio",
-                             "kdop",          "below_exact",     "ratio_to_double",
-                             "ns_per_bound_low", "ns_per_bound_high", "total_ms_low",
-                             "total_ms_high", "cpu_share", "load",
-                             "frames",        "bodies",          "evaluate_ms",
-                             "update_ms",     "query_ms",        "total_ms",
-                             "pairs",         "pairs_differing", "megabytes_per_body",
-                             "mean_vertices", "mean_bounds",     "mean_box_tests",
-                             "passes",        "gap_percent",     "least_n",
-                             "most_n",        "bounds",          "proven",
-                             "violated",      "seconds",         "lines",
+constexpr std::array numbers{"seed",
+                             "threads",
+                             "n",
+                             "vertices",
+                             "ns_per_bound",
+                             "level",
+                             "bvs",
+                             "mean_ratio",
+                             "max_ratio",
+                             "kdop",
+                             "below_exact",
+                             "ratio_to_double",
+                             "ns_per_bound_low",
+                             "ns_per_bound_high",
+                             "total_ms_low",
+                             "total_ms_high",
+                             "cpu_share",
+                             "load",
+                             "frames",
+                             "bodies",
+                             "evaluate_ms",
+                             "update_ms",
+                             "query_ms",
+                             "total_ms",
+                             "pairs",
+                             "pairs_differing",
+                             "megabytes_per_body",
+                             "mean_vertices",
+                             "mean_bounds",
+                             "mean_box_tests",
+                             "passes",
+                             "gap_percent",
+                             "least_n",
+                             "most_n",
+                             "bounds",
+                             "proven",
+                             "violated",
+                             "seconds",
+                             "lines",
                              "status"};
 constexpr std::array counts{"seed",     "threads", "level",  "bvs",      "kdop",  "frames", "bodies",
                             "vertices", "bounds",  "proven", "violated", "lines", "status"};
@@ -155,7 +181,9 @@ Traced Results::number(const Record& record, const char* field)
     const double value = record.number(field);
     if (!std::isfinite(value))
         return {};
-    return {value, {record.at}, record.number((std::string(field) + "_low").c_str()),
+    return {value,
+            {record.at},
+            record.number((std::string(field) + "_low").c_str()),
             record.number((std::string(field) + "_high").c_str())};
 }
 

@@ -37,11 +37,11 @@ StepFigures::Row measure_step(const TriangleMesh& mesh, std::size_t nodes, doubl
     integration.step_s = dt;
     constexpr int steps = 100; // between two estimates of the stable step, whose cost is so shared
     const RaceTimes times = race({[&] { ours.advance(steps * dt, integration); },
-                                         [&] {
-                                             for (int s = 0; s < steps; ++s)
-                                                 plain.step(dt);
-                                         }},
-                                        seconds);
+                                  [&] {
+                                      for (int s = 0; s < steps; ++s)
+                                          plain.step(dt);
+                                  }},
+                                 seconds);
     // The race runs either as often as it has time for: compare them after as many steps, anew.
     BodySimulation again(body, {});
     again.add(make_gravity(gravity));
@@ -60,8 +60,12 @@ StepFigures::Row measure_step(const TriangleMesh& mesh, std::size_t nodes, doubl
         reference.step(dt);
     for (std::size_t i = 0; i < body.size(); ++i)
         off = std::max(off, (at(again.positions(), i) - reference.x[i]).norm());
-    return {body.size(), static_cast<double>(body.neighbour.size()) / static_cast<double>(body.size()),
-            1e-3 * times.of(0).value / steps, 1e-3 * times.of(1).value / steps, times.ratio(1, 0), off};
+    return {body.size(),
+            static_cast<double>(body.neighbour.size()) / static_cast<double>(body.size()),
+            1e-3 * times.of(0).value / steps,
+            1e-3 * times.of(1).value / steps,
+            times.ratio(1, 0),
+            off};
 }
 
 void measure_evaluation(StepFigures& out, double seconds)
@@ -88,19 +92,18 @@ void measure_evaluation(StepFigures& out, double seconds)
         eigen.push_back(e);
     }
     std::vector<Vec3> ours(surface.mesh.vertices.size()), plain = ours;
-    const RaceTimes times =
-        race({[&] { evaluate(maps, ours); }, [&] { evaluate_float(maps, ours); },
-              [&] {
-                  for (std::size_t k = 0; k < plain.size(); ++k) {
-                      Vec3 sum = Vec3::Zero();
-                      const Weights::Row row = surface.weights.of(k);
-                      for (std::size_t e = 0; e < row.node.size(); ++e)
-                          sum +=
-                              row.weight[e] * (eigen[row.node[e]].a * surface.mesh.vertices[k] + eigen[row.node[e]].t);
-                      plain[k] = sum;
-                  }
-              }},
-             seconds);
+    const RaceTimes times = race({[&] { evaluate(maps, ours); }, [&] { evaluate_float(maps, ours); },
+                                  [&] {
+                                      for (std::size_t k = 0; k < plain.size(); ++k) {
+                                          Vec3 sum = Vec3::Zero();
+                                          const Weights::Row row = surface.weights.of(k);
+                                          for (std::size_t e = 0; e < row.node.size(); ++e)
+                                              sum += row.weight[e] * (eigen[row.node[e]].a * surface.mesh.vertices[k] +
+                                                                      eigen[row.node[e]].t);
+                                          plain[k] = sum;
+                                      }
+                                  }},
+                                 seconds);
     out.evaluate_us = 1e-3 * times.of(0).value;
     out.evaluate_float_us = 1e-3 * times.of(1).value;
     out.evaluate_plain_us = 1e-3 * times.of(2).value;

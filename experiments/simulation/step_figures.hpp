@@ -15,12 +15,12 @@ struct StepFigures {
         double neighbours; ///< mean
         double step_us, plain_us;
         Range ratio; ///< of these, plain over ours
-        double off; ///< greatest difference of a position after the steps of both, m
+        double off;  ///< greatest difference of a position after the steps of both, m
     };
     std::vector<Row> rows;
     double nodes_slope = 0, neighbours_slope = 0;
     double evaluate_us = 0, evaluate_float_us = 0, evaluate_plain_us = 0; ///< 30,000 vertices, 509 nodes
-    Range evaluate_ratio = 0, evaluate_float_ratio = 0; ///< plain over ours
+    Range evaluate_ratio = 0, evaluate_float_ratio = 0;                   ///< plain over ours
     std::vector<Figure> figures;
 };
 StepFigures measure_steps(double seconds);

@@ -42,6 +42,8 @@ void print_study(const Merged& all, const OutputOptions& options, const Complete
     output.set(completeness);
     for (const Rows& cell : all.cells)
         output.add_all(cell);
+    for (const Chart& chart : study_charts(all))
+        output.add_chart(chart);
     output.finish();
     if (options.records_only())
         return;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include <boost/math/distributions/students_t.hpp>
 #include <fmt/format.h>
@@ -11,6 +12,16 @@
 #include "experiments/report/table.hpp"
 
 namespace cinch {
+namespace {
+
+const std::vector<std::string> keys{"input", "motion", "n", "method", "precision", "kdop"};
+
+std::string shown(const nlohmann::ordered_json& value)
+{
+    return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+} // namespace
 
 Spread spread_of(std::vector<double> values)
 {
@@ -42,9 +53,55 @@ Spread spread_of(std::vector<double> values)
     return out;
 }
 
+std::vector<Chart> study_charts(const Merged& all)
+{
+    std::vector<std::string> order;
+    std::map<std::string, std::map<double, std::vector<double>>> lines; // by name and simulation nodes
+    std::map<std::string, std::set<std::string>> different;             // values of a key
+    for (const Rows& rows : all.cells)
+        for (const auto& row : rows)
+            for (const std::string& field : keys)
+                different[field].insert(shown(row[field]));
+    for (const Rows& rows : all.cells)
+        for (const auto& row : rows) {
+            if (!row.contains("root_max_ratio") || !row["root_ratio"].is_number())
+                continue;
+            std::string name;
+            for (const std::string& field : keys)
+                if (field != "n" && (different[field].size() > 1 || field == "method"))
+                    name += std::string(name.empty() ? "" : ", ") + (field == "kdop" ? "k = " : "") + shown(row[field]);
+            if (!lines.contains(name))
+                order.push_back(name);
+            lines[name][row["n"].get<double>()].push_back(row["root_ratio"]);
+        }
+    Chart chart{"root against simulation nodes",
+                "simulation nodes",
+                "radius over the true one, mean over frames",
+                true,
+                false,
+                {}};
+    bool is_line = false;
+    for (const std::string& name : order) {
+        Series series{name, {}, {}, false, {}, {}};
+        bool has_band = false;
+        for (const auto& [n, ratios] : lines[name]) {
+            const Spread spread = spread_of(ratios);
+            series.x.push_back(n);
+            series.y.push_back(spread.mean);
+            series.low.push_back(spread.mean - spread.half_width);
+            series.high.push_back(spread.mean + spread.half_width);
+            has_band |= spread.count > 1;
+        }
+        if (!has_band)
+            series.low.clear(), series.high.clear();
+        is_line |= series.x.size() > 1;
+        chart.series.push_back(std::move(series));
+    }
+    return is_line ? std::vector<Chart>{chart} : std::vector<Chart>{};
+}
+
 std::string study_table(const Merged& all)
 {
-    const std::vector<std::string> keys{"input", "motion", "n", "method", "precision", "kdop"};
     const std::vector<std::string> values{"root_ratio", "mean_ratio", "max_ratio", "width_ratio"};
     std::vector<std::vector<std::string>> order; // as they come
     std::map<std::vector<std::string>, std::map<std::string, std::vector<double>>> groups;
@@ -54,7 +111,7 @@ std::string study_table(const Merged& all)
                 continue;
             std::vector<std::string> key;
             for (const std::string& field : keys)
-                key.push_back(row[field].is_string() ? row[field].get<std::string>() : row[field].dump());
+                key.push_back(shown(row[field]));
             auto [group, is_new] = groups.try_emplace(key);
             if (is_new)
                 order.push_back(key);

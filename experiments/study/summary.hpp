@@ -4,6 +4,7 @@
 #include <string>
 
 #include "experiments/records/row_folder.hpp"
+#include "experiments/report/chart.hpp"
 
 namespace cinch {
 
@@ -19,5 +20,9 @@ Spread spread_of(std::vector<double> values);
 /// A row for each key of the runs' rows without its seed: means over seeds with their confidence, and quartiles, of the
 /// root's ratio, then the means of the others.
 std::string study_table(const Merged& all);
+
+/// The root's ratio against simulation nodes, mean over seeds with its confidence as a band, a line for each of the
+/// other keys; none where there are not several numbers of simulation nodes.
+std::vector<Chart> study_charts(const Merged& all);
 
 } // namespace cinch

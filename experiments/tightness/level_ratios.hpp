@@ -9,8 +9,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "exact/verifier.hpp"
 #include "cinch/bvh.hpp"
+#include "exact/verifier.hpp"
 
 namespace cinch {
 

@@ -133,25 +133,27 @@ Completeness TightnessResult::completeness() const
         }
     Completeness out{done, frames_wanted, whole == runs_wanted, ""};
     if (!out.complete)
-        out.note = interrupted_after(done, frames_wanted,
-                                     fmt::format("frames ({} of {})", whole,
-                                                 counted(runs_wanted, "motion or number of nodes",
-                                                         "motions and numbers of nodes")));
+        out.note = interrupted_after(
+            done, frames_wanted,
+            fmt::format("frames ({} of {})", whole,
+                        counted(runs_wanted, "motion or number of nodes", "motions and numbers of nodes")));
     return out;
 }
 
 std::vector<Figure> figures_of(const TightnessResult& result)
 {
     std::vector<Figure> figures;
+    if (result.input != "brain") // the targets are about this one
+        return figures;
     for (const TightnessRun& run : result.full)
         add_figures(run, figures);
     const auto best = std::find(result.methods.begin(), result.methods.end(), "best");
     if (best != result.methods.end() && result.completeness().complete && result.sweep.size() > 1) {
         const double few = result.sweep.front().levels.at("best")[0].mean(),
                      many = result.sweep.back().levels.at("best")[0].mean();
-        figures.push_back({fmt::format("root ratio of best, n = {} / n = {}", result.sweep.back().nodes,
-                                       result.sweep.front().nodes),
-                           fmt::format("{:.3f}", many / few), "< 1", many < few});
+        figures.push_back(
+            {fmt::format("root ratio of best, n = {} / n = {}", result.sweep.back().nodes, result.sweep.front().nodes),
+             fmt::format("{:.3f}", many / few), "< 1", many < few});
     }
     return figures;
 }

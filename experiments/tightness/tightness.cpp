@@ -99,8 +99,9 @@ private:
         // What counts in the sweep is the upper levels.
         const std::size_t leaf = attribute ? options_.leaf : std::max<std::size_t>(options_.leaf, 16);
         prepared_.reset();
-        prepared_ = or_leave(
-            [what, options = options_, leaf, attribute] { return std::make_unique<Prepared>(what, options, leaf, attribute); });
+        prepared_ = or_leave([what, options = options_, leaf, attribute] {
+            return std::make_unique<Prepared>(what, options, leaf, attribute);
+        });
         if (prepared_->input.clip.frame_count() != frames_)
             throw InputError(fmt::format("motion '{}' has {} frames, the first one {}", what.motion,
                                          prepared_->input.clip.frame_count(), frames_));
@@ -173,7 +174,6 @@ void refuse_what_no_study_has(const TightnessOptions& options)
     refuse(!options.input.weights.empty(), "--weights");
     refuse(!options.input.transforms.empty(), "--transforms");
     refuse(!options.input.body.empty(), "--body");
-    refuse(!options.output.plot.empty(), "--plot");
     refuse(!options.output.report.empty(), "--report");
 }
 
@@ -182,9 +182,18 @@ TightnessResult result_of(const Merged& all)
     const Json& plan = all.campaign.plan;
     const std::size_t motions = plan.at("motions").size(), runs = motions + plan.at("nodes").size(),
                       frames = plan.at("frames");
-    TightnessResult result{plan.at("input"), plan.at("report"),  plan.at("missing"), plan.at("precision"),
-                           plan.at("leaf"),  plan.at("methods"), {},                 {},
-                           runs,             runs * frames,      runs - motions,     false};
+    TightnessResult result{plan.at("input"),
+                           plan.at("report"),
+                           plan.at("missing"),
+                           plan.at("precision"),
+                           plan.at("leaf"),
+                           plan.at("methods"),
+                           {},
+                           {},
+                           runs,
+                           runs * frames,
+                           runs - motions,
+                           false};
     for (std::size_t r = 0; r < runs; ++r) {
         TightnessRun run;
         run.frames = frames;
@@ -235,8 +244,7 @@ int tightness(const TightnessOptions& given)
     TightnessOptions options = given;
     if (options.methods.empty())
         options.methods = usual;
-    if (const Plan plan = plan_of(options);
-        plan.inputs.size() > 1 || plan.nodes.size() > 1 || plan.seeds.size() > 1) {
+    if (const Plan plan = plan_of(options); plan.inputs.size() > 1 || plan.nodes.size() > 1 || plan.seeds.size() > 1) {
         refuse_what_no_study_has(options);
         return study(plan, options.shards, options.threads, options.output);
     } else {

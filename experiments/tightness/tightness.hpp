@@ -9,8 +9,8 @@
 namespace cinch {
 
 struct TightnessOptions {
-    InputOptions input; ///< but INPUT, --nodes, --motion and --seed, which are in `lists`
-    InputLists lists;   ///< several inputs, numbers of simulation nodes or seeds make it a study
+    InputOptions input;           ///< but INPUT, --nodes, --motion and --seed, which are in `lists`
+    InputLists lists;             ///< several inputs, numbers of simulation nodes or seeds make it a study
     std::vector<Methods> methods; ///< empty: sphere, eq12, limited, local, support, linear, best
     std::vector<std::size_t>
         nodes; ///< numbers of simulation nodes for the root's ratio; empty: 8 to 512 if the input lets us choose

@@ -209,11 +209,11 @@ def over_an_input():
         before = files_of(folder)
         skin = ["verify", "m.obj", "--weights", "w.txt", "--transforms", "t.txt"]
         refused = [["verify", "m.obj", "--nodes", "4", option, name]
-                   for option in ("--certificate", "--report", "--plot")
+                   for option in ("--certificate", "--report", "--plot-data")
                    for name in ("m.obj", "link", "hard", "./m.obj")]
         refused += [[*skin, "--certificate", "w.txt"], [*skin, "--report", "t.txt"],
                     ["tightness", "m.obj", "--nodes", "4", "--report", "m.obj"],
-                    ["cost", "m.obj", "--nodes", "4", "--plot", "m.obj"],
+                    ["cost", "m.obj", "--nodes", "4", "--plot-data", "m.obj"],
                     ["scaling", "m.obj", "--report", "m.obj"], ["view", "m.obj", "--report", "m.obj"],
                     ["corners", "case.json", "--report", "case.json"],
                     ["simulate", "own.json", "--frames", "own.json"], ["simulate", "own.json", "--checkpoint", "m.obj"],
@@ -223,8 +223,8 @@ def over_an_input():
             done = run(arguments, folder)
             assert done.returncode == 2 and not done.stdout, (arguments, done)
             assert "is an input of this command" in done.stderr and done.stderr.count("\n") == 1, (arguments, done)
-        twice = [["verify", "m.obj", "--nodes", "4", "--report", "x", "--plot", "x"],
-                 ["verify", "m.obj", "--nodes", "4", "--certificate", "x", "--plot", "./x"],
+        twice = [["verify", "m.obj", "--nodes", "4", "--report", "x.svg", "--plot", "x.svg"],
+                 ["verify", "m.obj", "--nodes", "4", "--certificate", "x.svg", "--plot", "./x.svg"],
                  ["simulate", "own.json", "--frames", "x", "--checkpoint", "x"]]
         for arguments in twice:
             done = run(arguments, folder)

@@ -29,7 +29,7 @@ public:
         auto& all = figure.chart.series;
         auto found = std::find_if(all.begin(), all.end(), [&](const Series& s) { return s.name == series; });
         if (found == all.end())
-            found = all.insert(all.end(), Series{series, {}, {}, points_only});
+            found = all.insert(all.end(), Series{series, {}, {}, points_only, {}, {}});
         found->x.push_back(x);
         found->y.push_back(y);
         if (figure.from.empty() || figure.from.back() != from)

@@ -54,10 +54,9 @@ html::Judgement hash_slower(const Results& results, int ring)
 }
 html::Judgement fish_gain(const Results& results)
 {
-    return html::at_least("gain-fishes",
-                          collide_times(results, "fishes", "refit-1").total /
-                              collide_times(results, "fishes", "eq12-aabb").total,
-                          6);
+    return html::at_least(
+        "gain-fishes",
+        collide_times(results, "fishes", "refit-1").total / collide_times(results, "fishes", "eq12-aabb").total, 6);
 }
 
 std::string table_2(const Results& results)
@@ -303,7 +302,8 @@ std::vector<Claim> collide_claims(const Results& results)
               fmt::format("{} times in total and {} times in refitting. A full update with 16-triangle leaves, without "
                           "any of the method, gains {} times.",
                           span(totals), span(refits), span(clusters))),
-        claim("The gain grows with the complexity of the surface.", "Section 6", {html::at_least("growth", least(growth), 1)},
+        claim("The gain grows with the complexity of the surface.", "Section 6",
+              {html::at_least("growth", least(growth), 1)},
               fmt::format("From 2,857 to 45,682 vertices the gain is multiplied by {}.", span(growth))),
         claim("The collision query becomes up to four times slower, as it updates on demand.", "Section 6",
               {html::at_most("query", greatest(query), 5)},
@@ -320,12 +320,13 @@ std::vector<Claim> collide_claims(const Results& results)
                         least(obb).value >= 1
                             ? ""
                             : "; where it is below 1, tighter bounds save more evaluation of vertices than they cost")),
-        claim("AABB/14-DOP is 5 to 10 % slower than OBB/14-DOP.", "Section 6", {html::at_least("rest-boxes", mean(rest), 1)},
+        claim("AABB/14-DOP is 5 to 10 % slower than OBB/14-DOP.", "Section 6",
+              {html::at_least("rest-boxes", mean(rest), 1)},
               fmt::format("It takes {} times as long on average, {} by scene.", figure(mean(rest)), span(rest))),
         claim("18- and 26-DOPs do not pay off.", "Section 6", {html::at_least("dops", least(dops), 1)},
               fmt::format("They take {} times as long as 14-DOPs.", span(dops))),
-        claim("With 24 fishes the method is about 12 times faster than a full update.", "Fig. 7",
-              {fish_gain(results)}, fmt::format("It is {} times faster; the table below says why.", figure(fishes_gain))),
+        claim("With 24 fishes the method is about 12 times faster than a full update.", "Fig. 7", {fish_gain(results)},
+              fmt::format("It is {} times faster; the table below says why.", figure(fishes_gain))),
     };
 }
 

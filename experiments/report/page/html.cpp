@@ -53,10 +53,7 @@ std::string inlined(std::string svg, const std::string& label)
     return svg.replace(0, 4, "<svg role=\"img\"");
 }
 
-const char* css_of(Verdict is)
-{
-    return is == Verdict::holds ? "same" : is == Verdict::fails ? "differs" : "unknown";
-}
+const char* css_of(Verdict is) { return is == Verdict::holds ? "same" : is == Verdict::fails ? "differs" : "unknown"; }
 
 // The verdict in a word, what it rests on, and a sentence.
 std::string marked(const std::vector<Judgement>& on, const char* holds, const char* fails, const std::string& sentence)
@@ -231,7 +228,7 @@ std::string chart(const ChartFigure& of)
     const std::string places_text = places(of.from);
     return fmt::format("<figure class=\"chart\">\n<div>{}</div>\n<figcaption>{} <span "
                        "class=\"from\">{}</span></figcaption>\n</figure>\n",
-                       inlined(svg({shown}), shown.title), of.caption,
+                       inlined(drawn(shown, Picture::svg), shown.title), of.caption,
                        of.from.empty() ? ""
                                        : fmt::format("<a class=\"f\" href=\"#{}\">{}</a>",
                                                      escaped(anchor(of.from.front())), escaped(places_text)));

@@ -39,8 +39,8 @@ std::string block(const std::vector<std::string>& rows, const char* css = "");
 std::string table(const std::string& caption, const std::vector<std::string>& head_rows,
                   const std::vector<std::string>& blocks);
 
-/// One statement about figures, by a name of its own on the page, and whether it holds. Tables and claims rest on these,
-/// so that they cannot say different things of one figure.
+/// One statement about figures, by a name of its own on the page, and whether it holds. Tables and claims rest on
+/// these, so that they cannot say different things of one figure.
 struct Judgement {
     std::string name;
     Verdict is;

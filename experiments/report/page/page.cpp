@@ -50,11 +50,10 @@ std::string claims_section(const std::vector<Section>& sections, bool unknown_to
         return "";
     std::string sum = fmt::format("{} of {} hold here", count[Verdict::holds], items.size());
     if (count[Verdict::fails])
-        sum += fmt::format(", {} {} not", count[Verdict::fails],
-                           count[Verdict::fails] == 1 ? "does" : "do");
+        sum += fmt::format(", {} {} not", count[Verdict::fails], count[Verdict::fails] == 1 ? "does" : "do");
     if (count[Verdict::unknown])
-        sum += fmt::format(", {} {} not measured", count[Verdict::unknown],
-                           count[Verdict::unknown] == 1 ? "is" : "are");
+        sum +=
+            fmt::format(", {} {} not measured", count[Verdict::unknown], count[Verdict::unknown] == 1 ? "is" : "are");
     if (count[Verdict::inconclusive])
         sum += fmt::format(", {} {} inconclusive", count[Verdict::inconclusive],
                            count[Verdict::inconclusive] == 1 ? "is" : "are");

@@ -124,7 +124,8 @@ Section proof_section(const Results& results)
         proven = proven + Results::number(*r, "proven");
     }
     const bool any = bounds.known() && bounds.value > 0;
-    section.claims.push_back({"The bounds are conservative: no vertex is ever outside.", "Appendix A",
+    section.claims.push_back({"The bounds are conservative: no vertex is ever outside.",
+                              "Appendix A",
                               {{"conservative", !any                           ? Verdict::unknown
                                                 : bounds.value == proven.value ? Verdict::holds
                                                                                : Verdict::fails}},
@@ -135,7 +136,8 @@ Section proof_section(const Results& results)
     const CornerSums sums = corner_sums(results);
     if (sums.rows.value > 0)
         section.claims.push_back(
-            {"Eq. 12 is the extreme corner of the limited convex weight space.", "Section 5.2",
+            {"Eq. 12 is the extreme corner of the limited convex weight space.",
+             "Section 5.2",
              {{"eq12-exact", sums.exact.value == sums.rows.value ? Verdict::holds : Verdict::fails}},
              fmt::format(
                  "It is the exact maximum in {} of {} reference cases. In the others it is above: more than two "

@@ -94,8 +94,7 @@ std::string rows_of(const Results& results, std::size_t vertices, const char* pa
         rows.push_back(fmt::format("<tr class=\"ratio\">{}</tr>\n", fmt::join(ratio, "")));
     }
 
-    const Traced slope = exponent(results, "textbook", vertices),
-                 textbook = gap(results, vertices),
+    const Traced slope = exponent(results, "textbook", vertices), textbook = gap(results, vertices),
                  own = optimal / us(results, "best", vertices, 509);
     const double paper_gap = paper_optimal.value / paper_figure("Table 1", paper, "509").value;
     if (!slope.known() || !textbook.known())
