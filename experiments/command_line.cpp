@@ -12,9 +12,12 @@
 
 namespace cinch {
 
-void add_scaling(CLI::App& app, ScalingOptions& o)
+void add_scaling(CLI::App& app, Run& run)
 {
+    const auto options = std::make_shared<ScalingOptions>();
+    ScalingOptions& o = *options;
     CLI::App& command = *app.add_subcommand("scaling", "time by simulation nodes and vertices (Table 1)");
+    command.callback([options, &run] { run = [options] { return scaling(*options); }; });
     command.add_option("INPUT", o.input, wrapped("a scene, mesh or character to measure instead of the brain"))
         ->option_text("");
     command.add_flag("--partial", o.partial,
@@ -35,9 +38,12 @@ All methods take turns on one core. Exit status: 0 measured, 2 bad usage,
 130 interrupted.)");
 }
 
-void add_simulate(CLI::App& app, SimulateOptions& o)
+void add_simulate(CLI::App& app, Run& run)
 {
+    const auto options = std::make_shared<SimulateOptions>();
+    SimulateOptions& o = *options;
     CLI::App& command = *app.add_subcommand("simulate", "run a scene with only the effects it names");
+    command.callback([options, &run] { run = [options] { return simulate(*options); }; });
     const auto option = options_of(command);
     option("SCENE", o.scene, fmt::format("a scene ({}) or a file (.json)", fmt::join(shipped_scenes(), ", ")))
         ->option_text("");
@@ -88,9 +94,12 @@ Exit status: 0 done, 1 a step could not be solved (the state before it is kept),
 2 bad usage or scene, 130 interrupted (what is done is kept).)");
 }
 
-void add_collide(CLI::App& app, CollideOptions& o)
+void add_collide(CLI::App& app, Run& run)
 {
+    const auto options = std::make_shared<CollideOptions>();
+    CollideOptions& o = *options;
     CLI::App& command = *app.add_subcommand("collide", "collision detection (Tables 2 to 4, Fig. 7)");
+    command.callback([options, &run] { run = [options] { return collide(*options); }; });
     const auto option = options_of(command);
     option("SCENE", o.scenes,
            "scenes of several bodies, or .json files [the rings of Table 2, santa-ring-1 to -8, and fishes]")
@@ -135,9 +144,12 @@ scene, 130 interrupted (results so far are printed).)");
 }
 
 #ifdef CINCH_EXACT
-void add_tightness(CLI::App& app, TightnessOptions& o)
+void add_tightness(CLI::App& app, Run& run)
 {
+    const auto options = std::make_shared<TightnessOptions>();
+    TightnessOptions& o = *options;
     CLI::App& command = *app.add_subcommand("tightness", "looseness by BVH level and node count (Fig. 5)");
+    command.callback([options, &run] { run = [options] { return tightness(*options); }; });
     add_input(command, o.input, &o.lists);
     command
         .add_option_function<std::vector<std::string>>(
@@ -184,9 +196,20 @@ Exit status: 0 done, 1 a bound violated, 2 bad usage or input, 130 interrupted
 (results so far are printed).)");
 }
 
-void add_cost(CLI::App& app, CostOptions& o, CostSimulationOptions& s)
+void add_cost(CLI::App& app, Run& run)
 {
+    const auto options = std::make_shared<CostOptions>();
+    const auto of_simulation = std::make_shared<CostSimulationOptions>();
+    CostOptions& o = *options;
+    CostSimulationOptions& s = *of_simulation;
     CLI::App& command = *app.add_subcommand("cost", "what accuracy costs in time");
+    command.callback([options, of_simulation, &run] {
+        of_simulation->output = options->output;
+        of_simulation->seconds = options->seconds;
+        run = [options, of_simulation] {
+            return of_simulation->scene.empty() ? cost(*options) : cost_simulation(*of_simulation);
+        };
+    });
     add_input(command, o.input);
     command
         .add_option("--kdops", o.kdops, wrapped(fmt::format("directions of the bounds [{}]", fmt::join(kdops, ","))))

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <functional>
+#include <memory>
+#include <optional>
+
 #include <CLI/CLI.hpp>
 
 #include "experiments/collide/collide.hpp"
@@ -22,22 +26,29 @@
 
 namespace cinch {
 
-/// Every subcommand with its options, which go to the struct given, and its help.
-void add_scaling(CLI::App& app, ScalingOptions& o);
-void add_simulate(CLI::App& app, SimulateOptions& o);
-void add_collide(CLI::App& app, CollideOptions& o);
-void add_view(CLI::App& app, ViewOptions& o);
-void add_reproduce(CLI::App& app, ReproduceOptions& o);
-void add_report(CLI::App& app, ReportOptions& o);
-void add_study(CLI::App& app, StudyOptions& o);
-void add_merge(CLI::App& app, MergeOptions& o);
+/// What a parsed command line asks for; returns the exit status.
+using Run = std::function<int()>;
+
+/// Each adds a subcommand with its options and its help; when the command line names it, `run` is set.
+void add_scaling(CLI::App& app, Run& run);
+void add_simulate(CLI::App& app, Run& run);
+void add_collide(CLI::App& app, Run& run);
+void add_view(CLI::App& app, Run& run);
+void add_reproduce(CLI::App& app, Run& run);
+void add_report(CLI::App& app, Run& run);
+void add_study(CLI::App& app, Run& run);
+void add_merge(CLI::App& app, Run& run);
 #ifdef CINCH_EXACT
-void add_verify(CLI::App& app, VerifyOptions& o);
-void add_tightness(CLI::App& app, TightnessOptions& o);
-void add_cost(CLI::App& app, CostOptions& o, CostSimulationOptions& s);
-void add_corners(CLI::App& app, CornersOptions& o);
-void add_stability(CLI::App& app, StabilityOptions& o);
-void add_fuzz(CLI::App& app, FuzzOptions& o);
+void add_verify(CLI::App& app, Run& run);
+void add_tightness(CLI::App& app, Run& run);
+void add_cost(CLI::App& app, Run& run);
+void add_corners(CLI::App& app, Run& run);
+void add_stability(CLI::App& app, Run& run);
+void add_fuzz(CLI::App& app, Run& run);
 #endif
+
+/// The command line: sets `run`, and returns nothing; or the exit status where that is all there is to do, with what
+/// --help or --version print, or one line on standard error.
+std::optional<int> parse_command_line(int argc, char** argv, Run& run);
 
 } // namespace cinch

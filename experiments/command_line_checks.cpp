@@ -12,9 +12,12 @@
 
 namespace cinch {
 
-void add_verify(CLI::App& app, VerifyOptions& o)
+void add_verify(CLI::App& app, Run& run)
 {
+    const auto options = std::make_shared<VerifyOptions>();
+    VerifyOptions& o = *options;
     CLI::App& command = *app.add_subcommand("verify", "prove every bound in exact arithmetic");
+    command.callback([options, &run] { run = [options] { return verify(*options); }; });
     add_input(command, o.input);
     const auto option = options_of(command);
     add_methods(command, o.methods);
@@ -82,9 +85,12 @@ Exit status: 0 all proven, 1 a bound violated, 2 bad usage or input,
 130 interrupted (results so far are printed; a certificate is not written).)");
 }
 
-void add_corners(CLI::App& app, CornersOptions& o)
+void add_corners(CLI::App& app, Run& run)
 {
+    const auto options = std::make_shared<CornersOptions>();
+    CornersOptions& o = *options;
     CLI::App& command = *app.add_subcommand("corners", "true corners of a weight space, and maxima");
+    command.callback([options, &run] { run = [options] { return corners(*options); }; });
     const auto option = options_of(command);
     option("CASE", o.files, "case files, see below, or names of shipped cases (data/cases)")
         ->required()
@@ -108,9 +114,12 @@ Exit status: 0 done, 1 a toolkit bound lies below the exact maximum, 2 bad
 usage or input (other files are still answered), 130 interrupted.)");
 }
 
-void add_stability(CLI::App& app, StabilityOptions& o)
+void add_stability(CLI::App& app, Run& run)
 {
+    const auto options = std::make_shared<StabilityOptions>();
+    StabilityOptions& o = *options;
     CLI::App& command = *app.add_subcommand("stability", "hard cases: expected, observed, and their bounds");
+    command.callback([options, &run] { run = [options] { return stability(*options); }; });
     command.add_option("--case", o.cases, wrapped("only cases with one of these in their name [all]"))
         ->delimiter(',')
         ->option_text("TEXT,...");
@@ -131,9 +140,18 @@ void add_stability(CLI::App& app, StabilityOptions& o)
 Exit status: 0 all pass, 1 a case fails, 2 bad usage, 130 interrupted.)");
 }
 
-void add_fuzz(CLI::App& app, FuzzOptions& o)
+void add_fuzz(CLI::App& app, Run& run)
 {
+    const auto options = std::make_shared<FuzzOptions>();
+    FuzzOptions& o = *options;
     CLI::App& command = *app.add_subcommand("fuzz", "every method against the exact side, random cases");
+    command.callback([options, &run] {
+        if (!options->seconds && !options->cases)
+            options->cases = 100000;
+        if (options->corpus.empty() && options->defect == Defect::none && options->shards.folder.empty())
+            options->corpus = "data/hard";
+        run = [options] { return fuzz(*options); };
+    });
     const auto option = options_of(command);
     option("--seconds", o.seconds, "stop after so many seconds; 0 runs nothing")
         ->check(within(0.0, 1e9))

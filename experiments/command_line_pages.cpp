@@ -10,9 +10,12 @@
 
 namespace cinch {
 
-void add_view(CLI::App& app, ViewOptions& o)
+void add_view(CLI::App& app, Run& run)
 {
+    const auto options = std::make_shared<ViewOptions>();
+    ViewOptions& o = *options;
     CLI::App& command = *app.add_subcommand("view", "a page to look at: surface, nodes, bounds (Figs. 1, 6, 7)");
+    command.callback([options, &run] { run = [options] { return view(*options); }; });
     const auto option = options_of(command);
     CLI::Option* scene = option("SCENE", o.request.scene,
                                 fmt::format("a scene ({}, or a .json file), a shape ({}), a mesh or a skinned "
@@ -95,9 +98,12 @@ Exit status: 0 done, 2 bad usage or input, 130 interrupted (the page has the
 views and methods that were done).)");
 }
 
-void add_reproduce(CLI::App& app, ReproduceOptions& o)
+void add_reproduce(CLI::App& app, Run& run)
 {
+    const auto options = std::make_shared<ReproduceOptions>();
+    ReproduceOptions& o = *options;
     CLI::App& command = *app.add_subcommand("reproduce", "all of the paper's tables and figures, as a page");
+    command.callback([options, &run] { run = [options] { return reproduce(*options); }; });
     command.add_flag(
         "--quick", o.quick,
         wrapped("fewer scenes, frames and repetitions: under three minutes on two cores, instead of under 45"));
@@ -124,9 +130,12 @@ experiment that could not run, or a damaged result (the rest is done),
 130 interrupted (what is finished is kept).)");
 }
 
-void add_report(CLI::App& app, ReportOptions& o)
+void add_report(CLI::App& app, Run& run)
 {
+    const auto options = std::make_shared<ReportOptions>();
+    ReportOptions& o = *options;
     CLI::App& command = *app.add_subcommand("report", "the page of 'cinch reproduce', from stored results");
+    command.callback([options, &run] { run = [options] { return report(*options); }; });
     command.add_option("DIR", o.folder, wrapped("folder that 'cinch reproduce --out DIR' wrote"))
         ->required()
         ->option_text("");

@@ -5,9 +5,12 @@
 
 namespace cinch {
 
-void add_study(CLI::App& app, StudyOptions& o)
+void add_study(CLI::App& app, Run& run)
 {
+    const auto options = std::make_shared<StudyOptions>();
+    StudyOptions& o = *options;
     CLI::App& command = *app.add_subcommand("study", "tightness of many inputs, nodes, seeds and methods");
+    command.callback([options, &run] { run = [options] { return study(*options); }; });
     const auto option = options_of(command);
     option("PLAN", o.plan, "what to study, a JSON file, see below; - for standard input")
         ->required()
@@ -47,9 +50,12 @@ Exit status: 0 done, 2 bad usage or input, 130 interrupted (with --out, rows so
 far are kept).)");
 }
 
-void add_merge(CLI::App& app, MergeOptions& o)
+void add_merge(CLI::App& app, Run& run)
 {
+    const auto options = std::make_shared<MergeOptions>();
+    MergeOptions& o = *options;
     CLI::App& command = *app.add_subcommand("merge", "one result from the shards of a run");
+    command.callback([options, &run] { run = [options] { return merge_shards(*options); }; });
     command.add_option("DIR", o.folder, wrapped("the folder that the shards were given (--out)"))
         ->required()
         ->option_text("");

@@ -10,7 +10,6 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
-#include <unistd.h>
 
 #include "cinch/surface.hpp"
 #include "experiments/fuzz/fuzz_failure.hpp"
@@ -18,6 +17,7 @@
 #include "experiments/fuzz/fuzz_state.hpp"
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/number.hpp"
+#include "experiments/report/progress.hpp"
 #include "experiments/report/provenance.hpp"
 
 namespace cinch {
@@ -36,7 +36,7 @@ public:
     explicit Session(const FuzzOptions& options)
         : options_(options), shard_(options.shards.shard.empty() ? Shard{} : parse_shard(options.shards.shard)),
           threads_(options.threads > 0 ? options.threads : tbb::info::default_concurrency()),
-          terminal_(isatty(STDERR_FILENO) == 1), output_(options.output, provenance(threads_, options.seed))
+          terminal_(draws_over_lines()), output_(options.output, provenance(threads_, options.seed))
     {
         if (options_.resume.empty())
             return;

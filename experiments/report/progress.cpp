@@ -2,6 +2,8 @@
 #include "experiments/report/progress.hpp"
 
 #include <cstdio>
+#include <cstdlib>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -10,9 +12,14 @@
 
 namespace cinch {
 
+bool draws_over_lines()
+{
+    const char* kind = std::getenv("TERM");
+    return isatty(STDERR_FILENO) == 1 && !(kind && std::string_view(kind) == "dumb");
+}
+
 Progress::Progress(std::string what, std::size_t steps)
-    : what_(std::move(what)), steps_(steps), terminal_(isatty(STDERR_FILENO) == 1),
-      start_(std::chrono::steady_clock::now())
+    : what_(std::move(what)), steps_(steps), terminal_(draws_over_lines()), start_(std::chrono::steady_clock::now())
 {
     draw(0);
 }

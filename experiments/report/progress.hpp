@@ -6,7 +6,10 @@
 
 namespace cinch {
 
-/// A progress bar with the time left, on standard error and only if that is a terminal. It erases itself.
+/// Whether lines on standard error can be drawn over: a terminal, and no TERM=dumb.
+bool draws_over_lines();
+
+/// A progress bar with the time left, on standard error and only where lines can be drawn over. It erases itself.
 class Progress {
 public:
     Progress(std::string what, std::size_t steps);

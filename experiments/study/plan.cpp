@@ -194,21 +194,24 @@ Json to_json(const Plan& plan)
         methods.push_back(name_of(m));
     for (const Precision p : plan.precisions)
         precisions.push_back(name_of(p));
-    return {{"inputs", plan.inputs},
-            {"nodes", plan.nodes},
-            {"seeds", plan.seeds},
-            {"motions", plan.motions},
-            {"clips", plan.clips},
-            {"methods", methods},
-            {"precisions", precisions},
-            {"kdops", plan.kdops},
-            {"frames", plan.frames},
-            {"leaf", plan.leaf},
-            {"passes", plan.passes},
-            {"fps", plan.fps},
-            {"support", plan.support},
-            {"partial", plan.partial},
-            {"detail", details[static_cast<std::size_t>(plan.detail)]}};
+    Json out{{"inputs", plan.inputs},
+             {"nodes", plan.nodes},
+             {"seeds", plan.seeds},
+             {"motions", plan.motions},
+             {"clips", plan.clips},
+             {"methods", methods},
+             {"precisions", precisions},
+             {"kdops", plan.kdops},
+             {"frames", plan.frames},
+             {"leaf", plan.leaf},
+             {"passes", plan.passes},
+             {"partial", plan.partial},
+             {"detail", details[static_cast<std::size_t>(plan.detail)]}};
+    if (plan.fps > 0)
+        out["fps"] = plan.fps;
+    if (plan.support > 0)
+        out["support"] = plan.support;
+    return out;
 }
 
 std::size_t cell_count(const Plan& plan)

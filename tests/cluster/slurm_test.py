@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""slurm_test.py CINCH SUBMIT: a study and a verification as array jobs of a real Slurm on this machine.
+"""slurm_test.py CINCH SUBMIT: a study and a fuzz campaign as array jobs of a real Slurm on this machine.
 
 Tasks and a node daemon are killed in the middle, what merge names is submitted again, and the result is that of a run
 without shards. Skips, saying so, where Slurm cannot run. Everything that is started ends with the test."""
@@ -188,7 +188,7 @@ def main():
             plan.write_text(json.dumps({"inputs": ["santa"], "nodes": "8..64", "seeds": "0-3", "frames": 1,
                                         "leaf": 16, "methods": ["eq12", "best"]}))
             campaign(slurm, "study", ["study", str(plan)], 5)
-            campaign(slurm, "verify", ["verify", "santa", "--nodes", "40", "--frames", "12", "--leaf", "4"], 4)
+            campaign(slurm, "fuzz", ["fuzz", "--cases", "250000", "--seed", "5"], 4)
         finally:
             kill_tasks(folder)
             for process in reversed(processes):

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "tests/support.hpp"
+#include "toolkit/surface/read_mesh.hpp"
 
 using namespace cinch;
 
@@ -30,6 +31,37 @@ TEST_CASE("help and version")
     const test::Run version = test::cinch("--version");
     CHECK(version.status == 0);
     CHECK_THAT(version.out, Catch::StartsWith("cinch "));
+}
+
+TEST_CASE("help of a command by either way, and what a typo may have meant")
+{
+    CHECK(test::cinch("help verify").out == test::cinch("verify --help").out);
+    CHECK(test::cinch("help").out == test::cinch("--help").out);
+    check_refused("help verfy", "unknown command 'verfy'; did you mean 'verify'?");
+    check_refused("help verify fuzz", "takes one command");
+    check_refused("colide", "did you mean 'collide'? (see 'cinch --help')");
+    check_refused("verify --framse 3", "did you mean '--frames'? (see 'cinch verify --help')");
+    CHECK(test::cinch("qwertyuiop").err.find("did you mean") == std::string::npos);
+    CHECK(test::cinch("verify --qwertyuiop").err.find("did you mean") == std::string::npos);
+}
+
+TEST_CASE("pictures are of three kinds; several inputs, nodes or seeds are a study")
+{
+    const test::TemporaryFolder folder;
+    const std::string base = (folder.path() / "chart").string();
+    check_refused("tightness fish --plot " + base + ".gif", ".svg, .pdf or .png");
+    const std::string lists =
+        "tightness fish-8000 santa --nodes 8,12 --seed 1-2 --frames 1 --leaf 512 --methods eq12 --motion mild";
+    const test::Run run = test::cinch(lists + " --json --plot " + base + ".pdf --plot-data " + base + ".csv");
+    REQUIRE(run.status == 0);
+    CHECK(read_bytes(base + ".pdf").starts_with("%PDF-"));
+    const std::string data = read_bytes(base + ".csv");
+    CHECK(data.starts_with("chart,series,x,y,low,high\n"));
+    CHECK(std::count(data.begin(), data.end(), '\n') == 1 + 2 * 2);
+    for (const char* other : {"--sweep 8", "--weights w.txt", "--body b"})
+        check_refused(lists + " " + other, "goes with one INPUT, one number of --nodes and one --seed");
+    check_refused("tightness fish --nodes 0", "--nodes");
+    check_refused("tightness fish --seed 5-1", "--seed: expected whole numbers as 7, 1-20 or 16..512");
 }
 
 TEST_CASE("numbers that are none, or out of range, are refused")

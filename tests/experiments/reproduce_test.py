@@ -49,7 +49,8 @@ def check_verdicts(page):
     said, in_tables, in_claims = {}, set(), set()
     for verdict, on, text in page.verdicts:
         statements = dict(one.rsplit(":", 1) for one in on)
-        follows = next((worst for worst in ("fails", "inconclusive", "holds") if worst in statements.values()), "unknown")
+        worst_first = ("fails", "inconclusive", "holds")
+        follows = next((worst for worst in worst_first if worst in statements.values()), "unknown")
         assert verdict == follows and text in words[verdict], (verdict, on, text)
         (in_tables if text in ("Same.", "Differs.") else in_claims).update(statements)
         for name, is_so in statements.items():

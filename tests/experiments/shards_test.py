@@ -123,8 +123,8 @@ with tempfile.TemporaryDirectory() as place:  # what different commands say of o
         known = tightness[row["method"], row["level"]]
         for key in ("bvs", "mean_ratio", "max_ratio"):  # sums of other orders
             assert abs(row[key] - known[key]) < 1e-13, (key, row, known)
-    levels = [row for row in records(run(*"verify santa --nodes 40 --frames 2 --leaf 16 --kdop 6 --json".split()).stdout)
-              if "level" in row]
+    proven = run(*"verify santa --nodes 40 --frames 2 --leaf 16 --kdop 6 --json".split())
+    levels = [row for row in records(proven.stdout) if "level" in row]
     assert len(levels) == 10
     for row in levels:
         known = tightness["best", row["level"]]
@@ -139,8 +139,9 @@ with tempfile.TemporaryDirectory() as place:
     scenes = [pathlib.Path(place) / f"two-{i}.json" for i in range(5)]
     box = {"surface": "box", "box": [1, 1, 1], "cells": [4, 4, 4], "nodes": 8, "density": 1000}
     for i, scene in enumerate(scenes):
-        scene.write_text(json.dumps({"name": scene.stem, "duration": 0.1, "effects": [{"effect": "gravity"}], "bodies": [
-            {"name": "a", **box}, {"name": "b", **box, "position": [0.3, 0.4, 0.5 + 0.1 * i]}]}))
+        bodies = [{"name": "a", **box}, {"name": "b", **box, "position": [0.3, 0.4, 0.5 + 0.1 * i]}]
+        scene.write_text(json.dumps({"name": scene.stem, "duration": 0.1, "effects": [{"effect": "gravity"}],
+                                     "bodies": bodies}))
     compare("collide", ["collide", *scenes, "--frames", 2, "--backends", "cinch,refit-16"], [("--json",)], kills=0)
 with tempfile.TemporaryDirectory() as place:  # a certificate in parts is the certificate, and the checker's verdict
     place = pathlib.Path(place)
