@@ -303,7 +303,7 @@ std::vector<Claim> collide_claims(const Results& results)
                           "any of the method, gains {} times.",
                           span(totals), span(refits), span(clusters))),
         claim("The gain grows with the complexity of the surface.", "Section 6",
-              {html::at_least("growth", least(growth), 1)},
+              {html::at_least("gain-growth", least(growth), 1)},
               fmt::format("From 2,857 to 45,682 vertices the gain is multiplied by {}.", span(growth))),
         claim("The collision query becomes up to four times slower, as it updates on demand.", "Section 6",
               {html::at_most("query", greatest(query), 5)},

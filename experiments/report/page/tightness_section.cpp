@@ -164,7 +164,7 @@ std::vector<Claim> tightness_claims(const Results& results)
     const Traced few = root_of_sweep(results, "eq12", 65), growth = mean / few,
                  spheres_growth = root(results, "sphere", "mean_ratio") / root_of_sweep(results, "sphere", 65);
     add("Tightness does not suffer from more simulation nodes, as that of accumulated deformations does.", "Section 2",
-        {html::at_most("growth", growth, 1.25)},
+        {html::at_most("looseness-growth", growth, 1.25)},
         fmt::format("From 65 to 509 simulation nodes the mean ratio of the root is multiplied by {} with Eq. 12, by {} "
                     "with spheres, by {} with the default.{}",
                     figure(growth), figure(spheres_growth),
