@@ -33,6 +33,7 @@ import contextlib
 import gzip
 import io
 import os
+import re
 import sys
 import zlib
 
@@ -47,9 +48,10 @@ class Parts(io.RawIOBase):
     """The bytes of the files of a folder, one after the other; those of a certificate are in order by their names."""
 
     def __init__(self, folder):
-        self.left = sorted(os.path.join(folder, name) for name in os.listdir(folder) if name.endswith(".jsonl.gz"))
+        self.left = sorted(os.path.join(folder, name) for name in os.listdir(folder)
+                           if re.fullmatch(r"0-surface\.jsonl\.gz|1-frame-\d{8}\.jsonl\.gz|2-end\.jsonl\.gz", name))
         if not self.left:
-            raise Rejected("no part of a certificate (.jsonl.gz) is in this folder")
+            raise Rejected("not readable: a folder without parts of a certificate (0-surface.jsonl.gz ...)")
         self.file = None
 
     def readable(self):

@@ -229,8 +229,9 @@ void add_cost(CLI::App& app, Run& run)
     command.add_option("--duration", s.duration_s, wrapped("of the scene to simulate, at most [0.25]"))
         ->check(within(0.001, 1e4))
         ->option_text("S");
-    command.add_flag("!--this-input-only", o.all_scenes,
-                     wrapped("the gap of the dual evaluation for the input alone, not for every shipped shape"));
+    command.add_flag_callback(
+        "--this-input-only", [&o] { o.all_scenes = false; },
+        wrapped("the gap of the dual evaluation for the input alone, not for every shipped shape"));
     add_output(command, o.output);
     command.footer(R"(Examples:
   cinch cost                             the brain; about a minute

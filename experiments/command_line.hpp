@@ -38,6 +38,7 @@ void add_reproduce(CLI::App& app, Run& run);
 void add_report(CLI::App& app, Run& run);
 void add_study(CLI::App& app, Run& run);
 void add_merge(CLI::App& app, Run& run);
+void add_schema(CLI::App& app, Run& run);
 #ifdef CINCH_EXACT
 void add_verify(CLI::App& app, Run& run);
 void add_tightness(CLI::App& app, Run& run);

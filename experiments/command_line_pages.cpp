@@ -65,6 +65,15 @@ void add_view(CLI::App& app, Run& run)
         ->check(CLI::Range(1, 100000))
         ->option_text("N")
         ->needs(scene);
+    option("--weights", o.request.weights, "weights of a mesh's vertices as text, as 'cinch verify' takes them")
+        ->option_text("FILE")
+        ->needs(scene);
+    option("--transforms", o.request.transforms, "transforms of the simulation nodes as text")
+        ->option_text("FILE")
+        ->needs(scene);
+    option("--clip", o.request.clip, "which clip of a character or of --transforms [the first]")
+        ->option_text("NAME")
+        ->needs(scene);
     option("--seed", o.request.seed, "seed of everything random [0]")->option_text("N");
     command
         .add_flag("--partial", o.request.partial,

@@ -18,7 +18,8 @@ constexpr void (*commands[])(CLI::App&, Run&) = {
 #ifdef CINCH_EXACT
     add_verify,  add_cost,     add_tightness, add_corners, add_fuzz,      add_stability,
 #endif
-    add_scaling, add_simulate, add_collide,   add_view,    add_reproduce, add_report,    add_study, add_merge,
+    add_scaling, add_simulate, add_collide,   add_view,    add_reproduce, add_report,
+    add_study,   add_merge,    add_schema,
 };
 
 // Levenshtein's.

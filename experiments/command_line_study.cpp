@@ -2,6 +2,7 @@
 // The commands that go past one run and one machine.
 #include "experiments/command_line.hpp"
 #include "experiments/command_line_options.hpp"
+#include "experiments/records/schema.hpp"
 
 namespace cinch {
 
@@ -70,6 +71,20 @@ Examples:
 
 Exit status: 0 done, 1 a bound is refuted, 2 shards are missing, damaged or do
 not fit together.)");
+}
+
+void add_schema(CLI::App& app, Run& run)
+{
+    CLI::App& command = *app.add_subcommand("schema", "what the fields of records are, as JSON Schema");
+    command.callback([&run] { run = print_schema; });
+    command.footer(R"(Every line that a command prints with --json, and every row of --csv, is a record
+of this schema.
+
+Examples:
+  cinch schema > record.schema.json
+  cinch schema | jq '.properties.mean_ratio'
+
+Exit status: 0.)");
 }
 
 } // namespace cinch

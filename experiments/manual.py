@@ -66,37 +66,70 @@ def manual(program):
                 out.append(f".TP\n.B {roff(entry)}\n{roff(description)}\n")
         out.append(".PP\n" + preformatted(footer))
     out.append(".SH EXIT STATUS\n" + preformatted(status))
+    for section, entries in (("FILES", FILES), ("ENVIRONMENT", ENVIRONMENT)):
+        out.append(f".SH {section}\n")
+        out += [f".TP\n.I {roff(entry)}\n{roff(description)}\n" for entry, description in entries]
+    out.append(".SH SEE ALSO\n.BR gnuplot (1),\n.BR sbatch (1)\n")
     return "".join(out)
 
+
+FILES = [("NAME.XXXXXX.part", "An output that is not whole yet; it becomes NAME, or goes when the command ends."),
+         ("DIR/shard-I-of-N.jsonl", "What a shard has finished (--out DIR), a line for each part, with a checksum."),
+         ("data/scenes, data/cases", "The scenes and weight spaces that come with the program.")]
+ENVIRONMENT = [("CINCH_TARGET", "Forces the instruction set of the kernels; results are the same."),
+               ("CINCH_SHARDS, SLURM_ARRAY_TASK_ID", "What --shard slurm reads."),
+               ("TERM", "With dumb no line is drawn over another.")]
 
 COMPLETION = """# SPDX-License-Identifier: GPL-3.0-or-later
 # bash completion for cinch; made from its --help
 _cinch()
 {
-    local word=${COMP_WORDS[COMP_CWORD]} command=${COMP_WORDS[1]} words=
+    local word=${COMP_WORDS[COMP_CWORD]} command=${COMP_WORDS[1]} words= names=
     COMPREPLY=()
     if [ "$COMP_CWORD" -eq 1 ]; then
         COMPREPLY=($(compgen -W "@COMMANDS@ --help --version" -- "$word"))
         return
     fi
+    case ${COMP_WORDS[COMP_CWORD-1]} in
+@VALUES@    esac
     case $command in
 @CASES@    esac
     case $word in
     -*) COMPREPLY=($(compgen -W "$words" -- "$word")) ;;
+    *) COMPREPLY=($(compgen -W "$names" -- "$word") $(compgen -f -- "$word")) ;;
     esac
 }
 complete -o bashdefault -o default -F _cinch cinch
 """
 
 
+def values_of(description):
+    """The names that a description lists, as "aabb or obb" or "of convex, sphere, eq12"; none where it lists none."""
+    text = re.sub(r" *(\[[^]]*\]|\([^)]*\))", "", description.split(": ", 1)[-1])
+    lists = re.findall(r"[a-z0-9+-]+(?:, [a-z0-9+-]+)*(?:,? (?:or|and) [a-z0-9+-]+)?", text)
+    longest = max(lists, key=lambda words: len(re.split(", | or | and ", words)), default="")
+    names = [name for name in re.split(r",? (?:or|and) |, ", longest) if name and name not in ("or", "and")]
+    return names if len(names) > 1 and not {"of", "to"} & set(names) else []
+
+
 def completion(program):
     commands = entries_of(parsed(help_of(program))[2], {"Subcommands"})
-    cases = ""
+    cases, values = "", {}
     for command, _ in commands:
-        options = [word for entry, _ in entries_of(parsed(help_of(program, command))[2], {"Options"})
-                   for word in re.findall(r"--[a-z0-9-]+", entry.split(" Excludes")[0])]
-        cases += f"    {command}) words=\"{' '.join(options)}\" ;;\n"
-    return COMPLETION.replace("@COMMANDS@", " ".join(name for name, _ in commands)).replace("@CASES@", cases)
+        sections = parsed(help_of(program, command))[2]
+        options = []
+        for entry, description in entries_of(sections, {"Options"}):
+            options += re.findall(r"--[a-z0-9-]+", entry.split(" Excludes")[0])
+            if re.search(r" (NAME|K|KIND|SHAPE)\b", entry):
+                values.setdefault(options[-1], values_of(description))
+        names = [name for _, description in entries_of(sections, {"Positionals"})
+                 for listed in re.findall(r"\(([^)]*)\)", description)
+                 for name in listed.split(", ") if re.fullmatch(r"[a-z][a-z0-9-]*", name)]
+        cases += f"    {command}) words=\"{' '.join(options)}\" names=\"{' '.join(names)}\" ;;\n"
+    known = "".join(f"    {option}) COMPREPLY=($(compgen -W \"{' '.join(names)}\" -- \"$word\")); return ;;\n"
+                    for option, names in values.items() if names)
+    return (COMPLETION.replace("@COMMANDS@", " ".join(["help"] + [name for name, _ in commands]))
+            .replace("@CASES@", cases).replace("@VALUES@", known))
 
 
 def main():

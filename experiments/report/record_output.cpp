@@ -113,8 +113,12 @@ void RecordOutput::add(const Json& record)
           std::pair("complete", Json(completeness_.complete))})
         if (!line.contains(name))
             line[name] = value;
-    if (options_.csv || plot_ || plot_data_ || page_)
+    if (plot_ || plot_data_ || page_)
         records_.push_back(line);
+    if (options_.csv) {
+        rows_.push_back(line);
+        rows_.back().update(from_);
+    }
     if (!options_.json)
         return;
     line.update(from_);
@@ -149,7 +153,7 @@ void RecordOutput::draw(const std::vector<Chart>& charts)
 void RecordOutput::finish()
 {
     if (options_.csv)
-        print_csv(records_);
+        print_csv(rows_);
     std::fflush(stdout);
     if (!plot_ && !plot_data_ && !page_)
         return;

@@ -64,7 +64,7 @@ private:
     Completeness completeness_;
     void draw(const std::vector<Chart>& charts);
 
-    std::vector<nlohmann::ordered_json> records_;
+    std::vector<nlohmann::ordered_json> records_, rows_; ///< of charts and page; of CSV, with the provenance
     std::vector<Chart> charts_;
     std::optional<WholeFile> plot_, plot_data_, page_;
 };

@@ -115,16 +115,22 @@ std::vector<Damage> write_page(const fs::path& folder, const fs::path& page)
     WholeFile whole(page);
     Results results;
     ReportNotes notes;
+    std::vector<std::string> never_quick;
+    bool is_quick = false;
     for (const Stage& stage : stages()) {
         const fs::path file = folder / (stage.name + ".jsonl");
         std::error_code error;
         if (!fs::exists(file, error)) {
-            notes.missing.push_back(stage.what);
+            (stage.quick.empty() ? never_quick : notes.missing).push_back(stage.what);
             continue;
         }
-        for (Record& record : read_results(file, notes.damage))
+        for (Record& record : read_results(file, notes.damage)) {
+            is_quick |= is_closing(record) && record.fields.value("quick", false);
             results.add(std::move(record));
+        }
     }
+    std::vector<std::string>& left_out = is_quick ? notes.left_out : notes.missing;
+    left_out.insert(left_out.end(), never_quick.begin(), never_quick.end());
     whole.write(report_page(results, notes));
     whole.commit();
     for (const Damage& damage : notes.damage)

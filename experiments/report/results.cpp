@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "experiments/records/schema.hpp"
 #include "toolkit/simulate/frame_file.hpp"
 
 namespace cinch {
@@ -40,78 +41,6 @@ template <class Better> Traced extreme(const std::vector<Traced>& all, Better be
         if (x.known() && (!best.known() || better(x.value, best.value)))
             best = x;
     return best;
-}
-
-// What the page reads and no two commands call by the same name with another type; anything else may be what it likes.
-constexpr std::array texts{"experiment", "command",   "commit", "version", "cpu",        "simd_target",
-                           "method",     "precision", "input",  "motion",  "arithmetic", "guarantee",
-                           "scene",      "backend",   "file",   "figure",  "stage",      "finished"};
-constexpr std::array numbers{"seed",
-                             "threads",
-                             "n",
-                             "vertices",
-                             "ns_per_bound",
-                             "level",
-                             "bvs",
-                             "mean_ratio",
-                             "max_ratio",
-                             "kdop",
-                             "below_exact",
-                             "ratio_to_double",
-                             "ns_per_bound_low",
-                             "ns_per_bound_high",
-                             "total_ms_low",
-                             "total_ms_high",
-                             "cpu_share",
-                             "load",
-                             "frames",
-                             "bodies",
-                             "evaluate_ms",
-                             "update_ms",
-                             "query_ms",
-                             "total_ms",
-                             "pairs",
-                             "pairs_differing",
-                             "megabytes_per_body",
-                             "mean_vertices",
-                             "mean_bounds",
-                             "mean_box_tests",
-                             "passes",
-                             "gap_percent",
-                             "least_n",
-                             "most_n",
-                             "bounds",
-                             "proven",
-                             "violated",
-                             "seconds",
-                             "lines",
-                             "status"};
-constexpr std::array counts{"seed",     "threads", "level",  "bvs",      "kdop",  "frames", "bodies",
-                            "vertices", "bounds",  "proven", "violated", "lines", "status"};
-constexpr std::array signed_numbers{"gap_percent"}; // the others are counts, sizes and times
-constexpr std::array required{"experiment", "command", "commit", "seed", "cpu"};
-
-std::string fault(const Json& record)
-{
-    if (!record.is_object())
-        return "expected a JSON object";
-    for (const char* name : required)
-        if (!record.contains(name))
-            return fmt::format("has no \"{}\", so it cannot be traced", name);
-    for (const char* name : texts)
-        if (record.contains(name) && !record[name].is_string())
-            return fmt::format("\"{}\" must be a string", name);
-    for (const char* name : numbers)
-        if (record.contains(name) && !record[name].is_number() && !record[name].is_null())
-            return fmt::format("\"{}\" must be a number or null", name);
-    for (const char* name : counts)
-        if (record.contains(name) && record[name].is_number() && !record[name].is_number_unsigned())
-            return fmt::format("\"{}\" is {}, which is no count", name, record[name].dump());
-    for (const char* name : numbers)
-        if (record.contains(name) && record[name].is_number() && record[name].get<double>() < 0 &&
-            std::find(signed_numbers.begin(), signed_numbers.end(), std::string_view(name)) == signed_numbers.end())
-            return fmt::format("\"{}\" is negative", name);
-    return "";
 }
 
 // The end of a closing line: ,"checksum":"0123456789abcdef"}
@@ -247,7 +176,7 @@ std::vector<Record> read_results(const std::filesystem::path& file, std::vector<
             bad("is not JSON");
             continue;
         }
-        if (std::string what = fault(fields); !what.empty()) {
+        if (std::string what = fault_of(fields); !what.empty()) {
             bad(std::move(what));
             continue;
         }

@@ -23,7 +23,8 @@ struct ViewRequest {
     int bits = 16;         ///< of the grid that positions are rounded to; 8 to 16
     std::size_t nodes = 0; ///< simulation nodes, where they are sampled; 0: as usual
     std::uint64_t seed = 0;
-    bool partial = false; ///< of a character: what is modelled, see InputOptions
+    bool partial = false;                  ///< of a character: what is modelled, see InputOptions
+    std::string weights, transforms, clip; ///< see InputOptions
 
     Method method = Method::best; ///< shown first
     std::size_t level = 3;

@@ -45,7 +45,7 @@ TEST_CASE("help of a command by either way, and what a typo may have meant")
     CHECK(test::cinch("verify --qwertyuiop").err.find("did you mean") == std::string::npos);
 }
 
-TEST_CASE("pictures are of three kinds; several inputs, nodes or seeds are a study")
+TEST_CASE("pictures are of three kinds, and several inputs, nodes or seeds are a study")
 {
     const test::TemporaryFolder folder;
     const std::string base = (folder.path() / "chart").string();

@@ -41,6 +41,12 @@ def main():
         for option in re.findall(r"^  (--[a-z0-9-]+)", text, re.M):
             assert option in completions(folder, command, option), (command, option)
     assert set(commands) <= set(completions(folder, '""'))
+    assert {"6", "14", "18", "26"} == set(completions(folder, "verify", "--kdop", '""'))
+    assert "best" in completions(folder, "verify", "--method", "b")
+    assert {"brain", "brain-3500", "brain-pull"} <= set(completions(folder, "verify", "brain"))
+    assert "help" in completions(folder, "he")
+    for section in ("EXIT STATUS", "FILES", "ENVIRONMENT", "SEE ALSO"):
+        assert f"\n.SH {section}\n" in manual, section
     if shutil.which("man"):
         shown = subprocess.run(["man", "--warnings=w", "-l", str(folder / "cinch.1")], capture_output=True, text=True)
         assert shown.returncode == 0 and not shown.stderr, shown.stderr

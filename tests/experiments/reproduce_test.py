@@ -58,6 +58,44 @@ def check_verdicts(page):
     assert len(said) >= 25 and len(in_tables & in_claims) >= 8, (len(said), in_tables & in_claims)
 
 
+def check_schema(program, folder):
+    """Every record of every command is what `cinch schema` says."""
+    try:
+        import jsonschema
+    except ImportError:
+        print("records are not compared with the schema: python3-jsonschema is not there")
+        return
+
+    def output(*words, status=0):
+        done = subprocess.run([program, *words, "--json"], capture_output=True, text=True)
+        assert done.returncode == status, (words, done.stderr)
+        return done.stdout
+
+    schema = json.loads(subprocess.run([program, "schema"], capture_output=True, check=True).stdout)
+    jsonschema.Draft202012Validator.check_schema(schema)
+    valid = jsonschema.Draft202012Validator(schema)
+    texts = [file.read_text() for file in folder.glob("*.jsonl")]
+    texts += [output(*words.split()) for words in (
+        "simulate beam --duration 0.02 --energies --explain", "stability --case inverted", "fuzz --cases 500",
+        "scaling fish-8000 --seconds 0.01", "verify santa --nodes 20 --frames 1 --leaf 64 --volume --stats",
+        "tightness santa fish-8000 --nodes 12 --frames 1 --leaf 512 --motion mild",
+        "corners 010_generic_n7 --list --limit 2", "cost --simulation twist-180 --duration 0.01 --seconds 0.05")]
+    texts.append(output("fuzz", "--cases", "500", "--sabotage", "lower-h", status=1))
+    texts.append(output("verify", "santa", "--nodes", "20", "--frames", "1", "--leaf", "64", "--sabotage",
+                        "no-rounding", status=1))
+    for detail in ("frames", "bvs"):
+        plan = json.dumps({"inputs": "santa", "nodes": 12, "frames": 1, "leaf": 512, "detail": detail})
+        texts.append(subprocess.run([program, "study", "-", "--json"], input=plan, capture_output=True, text=True,
+                                    check=True).stdout)
+    count = 0
+    for text in texts:
+        for line in text.splitlines():
+            problem = next(valid.iter_errors(json.loads(line)), None)
+            assert problem is None, (problem.message[:300], line[:300])
+            count += 1
+    assert count > 1000, count
+
+
 def main():
     program, folder = sys.argv[1], pathlib.Path(sys.argv[2])
     shutil.rmtree(folder, ignore_errors=True)
@@ -115,6 +153,8 @@ def main():
     check_verdicts(page)
     words = "".join(page.text)
     assert "Left out:" not in words and "A check failed:" not in words
+
+    check_schema(program, folder)
 
     # Once more: nothing is left to run. Then damage.
     again = subprocess.run(command, capture_output=True, text=True)

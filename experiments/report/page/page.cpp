@@ -145,6 +145,9 @@ std::string report_page(const Results& results, const ReportNotes& notes)
     if (!notes.missing.empty())
         body += fmt::format("<p class=\"missing\"><strong>Not run yet:</strong> {}</p>\n",
                             escaped(fmt::format("{}", fmt::join(notes.missing, "; "))));
+    if (!notes.left_out.empty())
+        body += fmt::format("<p class=\"missing\"><strong>Not part of a quick run:</strong> {}</p>\n",
+                            escaped(fmt::format("{}", fmt::join(notes.left_out, "; "))));
     for (const Record& record : results.all())
         if (is_closing(record) && record.number("status") != 0)
             body += fmt::format("<p class=\"damage\"><strong>A check failed:</strong> {}: <code>{}</code> ended with "

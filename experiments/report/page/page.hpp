@@ -16,7 +16,8 @@ std::string command_page(const Results& results, const std::string& note = {});
 /// there yet.
 struct ReportNotes {
     std::vector<Damage> damage;
-    std::vector<std::string> missing; ///< experiments not run yet, for people
+    std::vector<std::string> missing;  ///< experiments not run yet, for people
+    std::vector<std::string> left_out; ///< those that are no part of a quick run
 };
 std::string report_page(const Results& results, const ReportNotes& notes);
 

@@ -119,7 +119,9 @@ Section proof_section(const Results& results)
     if (section.body.empty())
         return section;
     Traced bounds{0, {}}, proven{0, {}};
+    bool refits = false, lazy = false;
     for (const Record* r : totals(results)) {
+        (r->word("update").empty() ? refits : lazy) = true;
         bounds = bounds + Results::number(*r, "bounds");
         proven = proven + Results::number(*r, "proven");
     }
@@ -129,9 +131,11 @@ Section proof_section(const Results& results)
                               {{"conservative", !any                           ? Verdict::unknown
                                                 : bounds.value == proven.value ? Verdict::holds
                                                                                : Verdict::fails}},
-                              any ? fmt::format("{} of {} bounds of this program are proven in exact arithmetic, of "
-                                                "refits and of those that collision detection reads.",
-                                                count(proven), count(bounds))
+                              any ? fmt::format("{} of {} bounds of this program are proven in exact arithmetic, {}.",
+                                                count(proven), count(bounds),
+                                                refits && lazy ? "of refits and of those that collision detection reads"
+                                                : lazy         ? "of those that collision detection reads"
+                                                               : "of refits")
                                   : ""});
     const CornerSums sums = corner_sums(results);
     if (sums.rows.value > 0)

@@ -28,15 +28,35 @@ std::string value_cell(const Record& record, const std::string& field)
                                                 : value.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
-/// Fields that a table shows: neither provenance nor series.
+/// Fields that a table shows: neither provenance nor series nor the ends of a range.
 std::vector<std::string> columns_of(const Record& record)
 {
     static const Json provenance_fields = to_json(Provenance{});
     std::vector<std::string> columns;
     for (const auto& [name, value] : record.fields.items())
-        if (!provenance_fields.contains(name) && name != "experiment" && !(value.is_array() && value.size() > 8))
+        if (!provenance_fields.contains(name) && name != "experiment" && !(value.is_array() && value.size() > 8) &&
+            !name.ends_with("_low") && !name.ends_with("_high"))
             columns.push_back(name);
     return columns;
+}
+
+/// Of several records, the columns in which all say the same, said once: "input santa; k 6".
+std::string take_constant(std::vector<std::string>& columns, const std::vector<const Record*>& records)
+{
+    std::string said;
+    if (records.size() < 2)
+        return said;
+    std::erase_if(columns, [&](const std::string& column) {
+        const Json& first = records.front()->fields.at(column);
+        if (!std::all_of(records.begin(), records.end(),
+                         [&](const Record* r) { return r->fields.at(column) == first; }))
+            return false;
+        said += fmt::format("{}{} {}", said.empty() ? "" : "; ", column,
+                            first.is_string() ? first.get<std::string>()
+                                              : first.dump(-1, ' ', false, Json::error_handler_t::replace));
+        return true;
+    });
+    return said;
 }
 
 /// A line for people: of one with much data its fields without that, and how long it is.
@@ -67,7 +87,8 @@ std::string record_tables(const Results& results)
         found->second.push_back(&record);
     }
     std::string body;
-    for (const auto& [columns, records] : groups) {
+    for (auto& [columns, records] : groups) {
+        const std::string same = take_constant(columns, records);
         std::vector<std::string> head, rows;
         for (const std::string& column : columns)
             head.push_back(html::head_cell(escaped(column)));
@@ -77,7 +98,9 @@ std::string record_tables(const Results& results)
                 cells.push_back(value_cell(*record, column));
             rows.push_back(html::row(cells));
         }
-        body += html::table(counted(records.size(), "record", "records"), {html::row(head)}, {html::block(rows)});
+        body += html::table(counted(records.size(), "record", "records") +
+                                (same.empty() ? "" : fmt::format("; in all of them: {}", escaped(same))),
+                            {html::row(head)}, {html::block(rows)});
     }
     return body.empty() ? "" : html::section("records", "Records", body);
 }

@@ -5,10 +5,17 @@ namespace cinch {
 
 const char* const page_style =
     R"css(:root { --ink: #1c2126; --soft: #5d6670; --line: #d9dde1; --wash: #f5f6f7; --link: #0b5c92;
-  --same: #1a7346; --differs: #b4460f; --unknown: #6b7280; }
+  --same: #1a7346; --differs: #b4460f; --unknown: #6b7280;
+  --paper: #fff; --mark: #fff3c4; --warn: #fdf3ec; --faint: #9aa1a8; }
+@media (prefers-color-scheme: dark) { @media not print {
+  :root { --ink: #e4e7ea; --soft: #a4adb6; --line: #3a4149; --wash: #20252b; --link: #7ab8e6;
+    --same: #5fc392; --differs: #f0935f; --unknown: #a4adb6;
+    --paper: #14181c; --mark: #4a4113; --warn: #33231a; --faint: #79828b; }
+  figure.chart svg { background: #fff; border-radius: 4px; }
+} }
 * { box-sizing: border-box; }
-html { color-scheme: light; scroll-behavior: smooth; -webkit-text-size-adjust: 100%; }
-body { margin: 0; color: var(--ink); background: #fff;
+html { color-scheme: light dark; scroll-behavior: smooth; -webkit-text-size-adjust: 100%; }
+body { margin: 0; color: var(--ink); background: var(--paper);
   font: 16px/1.55 system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", "DejaVu Sans", sans-serif; }
 main { max-width: 60rem; margin: 0 auto; padding: 2.5rem 1.25rem 5rem; }
 h1 { font-size: 2rem; line-height: 1.2; letter-spacing: -.015em; margin: 0 0 .6rem; }
@@ -24,8 +31,8 @@ nav a { display: inline-block; margin-right: 1.1rem; color: var(--link); text-de
 nav a:hover { text-decoration: underline; }
 a.f { color: inherit; text-decoration: underline dotted #aab2ba 1px; text-underline-offset: .2em; }
 a.f:hover, a.f:focus { color: var(--link); text-decoration: underline solid; }
-.none { color: #9aa1a8; }
-.damage, .missing { padding: .55rem .9rem; border-left: 4px solid var(--differs); background: #fdf3ec;
+.none { color: var(--faint); }
+.damage, .missing { padding: .55rem .9rem; border-left: 4px solid var(--differs); background: var(--warn);
   max-width: none; overflow-wrap: anywhere; }
 .missing { border-color: var(--unknown); background: var(--wash); }
 .table { overflow-x: auto; margin: 1.2rem 0 1.6rem; }
@@ -58,7 +65,7 @@ details { margin: .4rem 0; }
 summary { cursor: pointer; }
 .lines { margin: .4rem 0 1rem; padding-left: 3.6rem; color: var(--soft); }
 .lines li { margin: .1rem 0; overflow-wrap: anywhere; }
-.lines li:target { background: #fff3c4; color: var(--ink); }
+.lines li:target { background: var(--mark); color: var(--ink); }
 #provenance td { text-align: left; }
 #provenance table { font-size: .84rem; }
 #provenance td:nth-child(2) { min-width: 18rem; }
@@ -72,8 +79,10 @@ summary { cursor: pointer; }
   @page { margin: 18mm 15mm; }
   body { font-size: 10pt; }
   main { max-width: none; padding: 0; }
-  nav, #lines { display: none; }
-  h2 { break-after: avoid; }
+  :root { color-scheme: light; }
+  nav, #lines, .view-controls, .view-keys { display: none !important; }
+  h2, h3 { break-after: avoid; }
+  .view { break-inside: avoid; }
   figure.chart, tbody, .claims li { break-inside: avoid; }
   figure.chart svg { min-width: 0; max-width: 15cm; }
   .table { overflow: visible; }

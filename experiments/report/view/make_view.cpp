@@ -284,6 +284,9 @@ nlohmann::ordered_json make_view(const ViewRequest& request)
     what.nodes = request.nodes;
     what.seed = request.seed;
     what.partial = request.partial;
+    what.weights = request.weights;
+    what.transforms = request.transforms;
+    what.clip = request.clip;
     const Inputs inputs = or_leave([what] { return load_inputs(what); });
 
     std::vector<DrawnBody> bodies;

@@ -8,8 +8,8 @@ const markup = `
   <div class="view-legend"><span class="view-legend-title"></span><span class="view-ramp"></span><span class="view-ticks"></span></div>
 </div>
 <div class="view-controls">
-  <label class="view-wide">Frame <button type="button" name="play" title="Play or pause (space)">Play</button><input type="range" name="frame" min="0" step="1"><output name="frame"></output></label>
-  <label class="view-wide">Level <input type="range" name="level" min="0" step="1"><output name="level"></output></label>
+  <label class="view-wide">Frame <button type="button" name="play" title="Play or pause (space)">Play</button><input type="range" name="frame" min="0" step="1" aria-label="Frame"><output name="frame"></output></label>
+  <label class="view-wide">Level <input type="range" name="level" min="0" step="1" aria-label="Level"><output name="level"></output></label>
   <label>Method <select name="method"></select></label>
   <label>k-DOP <select name="k"></select></label>
   <label>Colour <select name="measure"><option value="area">surface area</option><option value="volume">volume</option></select></label>
@@ -167,6 +167,8 @@ class View {
         if (event.ctrlKey || event.altKey || event.metaKey || target.tagName === 'SELECT')
             return;
         if (event.key === ' ' && target !== this.canvas && target.type !== 'range') // presses what has the focus
+            return;
+        if (target.type === 'range' && /^(Arrow|Home$|End$|Page)/.test(event.key)) // moves the slider that has it
             return;
         const toggle = name => () => { if (this.control(name)) this.set({[name]: !state[name]}); };
         const action = {
