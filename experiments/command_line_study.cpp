@@ -77,8 +77,8 @@ void add_schema(CLI::App& app, Run& run)
 {
     CLI::App& command = *app.add_subcommand("schema", "what the fields of records are, as JSON Schema");
     command.callback([&run] { run = print_schema; });
-    command.footer(R"(Every line that a command prints with --json, and every row of --csv, is a record
-of this schema.
+    command.footer(R"(Every line that a command prints with --json, and every row of --csv, is a
+record of this schema; the corners that 'cinch corners --list' prints are not.
 
 Examples:
   cinch schema > record.schema.json

@@ -291,7 +291,7 @@ TEST_CASE("what a result holds is text, never markup")
     Json odd{{"experiment", evil}, {evil, evil}};
     records.push_back(odd);
     const Results results = results_of(whole("x", records));
-    for (const std::string& page : {report_page(results, {{{evil, 1, evil}}, {evil}}), command_page(results)}) {
+    for (const std::string& page : {report_page(results, {{{evil, 1, evil}}, {evil}, {}}), command_page(results)}) {
         CHECK(page.find("<script>alert") == std::string::npos);
         CHECK(page.find("<b>") == std::string::npos);
         CHECK(page.find("&lt;script&gt;alert") != std::string::npos);

@@ -79,10 +79,10 @@ def check_schema(program, folder):
         "simulate beam --duration 0.02 --energies --explain", "stability --case inverted", "fuzz --cases 500",
         "scaling fish-8000 --seconds 0.01", "verify santa --nodes 20 --frames 1 --leaf 64 --volume --stats",
         "tightness santa fish-8000 --nodes 12 --frames 1 --leaf 512 --motion mild",
-        "corners 010_generic_n7 --list --limit 2", "cost --simulation twist-180 --duration 0.01 --seconds 0.05")]
+        "corners 010_generic_n7", "cost --simulation twist-180 --duration 0.01 --seconds 0.05")]
     texts.append(output("fuzz", "--cases", "500", "--sabotage", "lower-h", status=1))
     texts.append(output("verify", "santa", "--nodes", "20", "--frames", "1", "--leaf", "64", "--sabotage",
-                        "no-rounding", status=1))
+                        "lower-h", status=1))
     for detail in ("frames", "bvs"):
         plan = json.dumps({"inputs": "santa", "nodes": 12, "frames": 1, "leaf": 512, "detail": detail})
         texts.append(subprocess.run([program, "study", "-", "--json"], input=plan, capture_output=True, text=True,

@@ -277,7 +277,7 @@ TEST_CASE("a view of one's own weights and transforms")
     const std::string mesh = folder.write("m.obj",
                                           "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"),
                       weights = folder.write("w.txt", "4 2\n1 0 1\n1 1 1\n2 0 0.5 1 0.5\n1 0 1\n"),
-                      clips = folder.write("t.txt", "2\nstill 2 1\n0 1 0 0 0 0 1 0 0 0 0 1 0 1 0 0 0 0 1 0 0 0 0 1 0\n"
+                      clips = folder.write("t.txt", "2\nstill 1 2\n0 1 0 0 0 0 1 0 0 0 0 1 0 1 0 0 0 0 1 0 0 0 0 1 0\n"
                                                     "move 2 2\n0 1 0 0 0 0 1 0 0 0 0 1 0 1 0 0 0 0 1 0 0 0 0 1 0\n"
                                                     "1 1 0 0 0 0 1 0 0 0 0 1 0 1 0 0 5 0 1 0 0 0 0 1 0\n");
     const std::string skin = "view " + mesh + " --weights " + weights + " --transforms " + clips;
@@ -285,6 +285,7 @@ TEST_CASE("a view of one's own weights and transforms")
     REQUIRE(run.status == 0);
     const Json view = Json::parse(run.lines().at(0));
     CHECK(view.at("frames") == 2);
+    CHECK(view.at("view").at("time_s").size() == 2);
     CHECK(test::cinch(skin + " --clip jump --json").status == 2);
     CHECK(test::cinch("view " + mesh + " --weights " + weights + " --json").status == 2);
 }
