@@ -115,6 +115,20 @@ TEST_CASE("a verdict is inconclusive where the limit lies between the quartiles,
     CHECK(quotient.high == 11);
 }
 
+TEST_CASE("a race leaves out rounds that were sat out, and knows less where others had the core")
+{
+    RaceTimes times;
+    times.ns = {{4, NAN, NAN, 4.1, 4}, {2, 2, 2, 2, 2}};
+    CHECK(times.of(0).value == 4);
+    CHECK(times.ratio(0, 1).value == 2);
+    CHECK(times.ratio(0, 1).is_settled());
+    CHECK(at_least(times.ratio(0, 1), 1.95) == Verdict::holds);
+    times.cpu_share = 0.6;
+    CHECK(times.ratio(0, 1).value == 2);
+    CHECK(!times.ratio(0, 1).is_settled());
+    CHECK(at_least(times.ratio(0, 1), 1.95) == Verdict::inconclusive);
+}
+
 TEST_CASE("cinch scaling: every method at every size, figures with their targets")
 {
     const test::Run run = test::cinch("scaling --json --seconds 0.01");

@@ -135,6 +135,9 @@ compare("tightness", "tightness santa --nodes 40 --frames 5 --leaf 16 --sweep 8,
 compare("fuzz", ["fuzz", "--cases", 12 * 4096 - 5, "--seed", 3], [("--json",), ()], kills=3)
 compare("fuzz with violations", ["fuzz", "--cases", 8 * 4096, "--sabotage", "lower-h"], [("--json",), ()], kills=0,
         status=1)
+with tempfile.TemporaryDirectory() as place:  # and with what a run without cells finds
+    damaged = ["fuzz", "--cases", 3 * 4096, "--sabotage", "lower-h", "--json"]
+    assert records(run(*damaged, "--out", place, status=1).stdout) == records(run(*damaged, status=1).stdout)
 with tempfile.TemporaryDirectory() as place:
     scenes = [pathlib.Path(place) / f"two-{i}.json" for i in range(5)]
     box = {"surface": "box", "box": [1, 1, 1], "cells": [4, 4, 4], "nodes": 8, "density": 1000}

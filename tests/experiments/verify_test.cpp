@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "experiments/verify_rows.hpp"
 #include "tests/support.hpp"
 
 using namespace cinch;
@@ -302,4 +303,45 @@ TEST_CASE("an interrupt keeps what is done, says so, and exits 130")
         return;
     }
     FAIL("never got to a first frame");
+}
+
+TEST_CASE("rows of verify add up to what they were made of")
+{
+    VerifyTotals frame;
+    frame.levels.resize(2);
+    double next = 1;
+    for (LevelTotals& l : frame.levels) {
+        l = {7, next, 3, 4, 5, next + 1, next + 2, {next + 3, next + 4, next + 5, next + 6}};
+        next += 10;
+    }
+    frame.ladder = {11, 12, 13, 14, 15};
+    frame.infinite = 16;
+    frame.unbounded_nodes = 17;
+    frame.decided_by_filter = 18;
+    VerifyTotals sum;
+    for (const std::size_t f : {0, 1})
+        add_row(frame_row(0, f, frame), sum);
+    REQUIRE(sum.levels.size() == 2);
+    for (std::size_t l = 0; l < 2; ++l) {
+        const LevelTotals &one = frame.levels[l], &both = sum.levels[l];
+        CHECK(both.bvs == one.bvs);
+        CHECK(both.proven == 6);
+        CHECK(both.violated == 8);
+        CHECK(both.measured == 10);
+        CHECK(both.ratio_sum == 2 * one.ratio_sum);
+        CHECK(both.ratio_max == one.ratio_max);
+        CHECK(both.loss.box == 2 * one.loss.box);
+        CHECK(both.loss.interval == 2 * one.loss.interval);
+        CHECK(both.loss.corner == 2 * one.loss.corner);
+        CHECK(both.loss.rounding == 2 * one.loss.rounding);
+    }
+    CHECK(sum.ladder.compared == 22);
+    CHECK(sum.ladder.broken == 24);
+    CHECK(sum.ladder.defaults == 26);
+    CHECK(sum.ladder.above == 28);
+    CHECK(sum.ladder.clearly == 30);
+    CHECK(sum.infinite == 32);
+    CHECK(sum.unbounded_nodes == 34);
+    CHECK(sum.decided_by_filter == 36);
+    CHECK(sum.frames == 2);
 }
