@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The commands that simulate and measure.
-#include "experiments/command_line.hpp"
-
 #include <fmt/format.h>
 
 #include "cinch/bounds.hpp"
 #include "experiments/collide/backend.hpp"
+#include "experiments/collide/collide.hpp"
+#include "experiments/command_line.hpp"
 #include "experiments/command_line_options.hpp"
 #include "experiments/report/table.hpp"
-#include "experiments/simulation/find_scene.hpp"
+#include "experiments/scaling.hpp"
+#include "experiments/shipped.hpp"
+#include "experiments/simulation/cost_simulation.hpp"
+#include "experiments/simulation/simulate.hpp"
+#ifdef CINCH_EXACT
+#include "experiments/cost/cost.hpp"
+#include "experiments/tightness/tightness.hpp"
+#endif
 
 namespace cinch {
 

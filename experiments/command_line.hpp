@@ -4,25 +4,9 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include <CLI/CLI.hpp>
-
-#include "experiments/collide/collide.hpp"
-#include "experiments/merge.hpp"
-#include "experiments/report/reproduce.hpp"
-#include "experiments/scaling.hpp"
-#include "experiments/simulation/cost_simulation.hpp"
-#include "experiments/simulation/simulate.hpp"
-#include "experiments/study/study.hpp"
-#include "experiments/view.hpp"
-#ifdef CINCH_EXACT
-#include "experiments/corners.hpp"
-#include "experiments/cost/cost.hpp"
-#include "experiments/fuzz/fuzz.hpp"
-#include "experiments/stability/stability.hpp"
-#include "experiments/tightness/tightness.hpp"
-#include "experiments/verify.hpp"
-#endif
 
 namespace cinch {
 
@@ -48,8 +32,14 @@ void add_stability(CLI::App& app, Run& run);
 void add_fuzz(CLI::App& app, Run& run);
 #endif
 
-/// The command line: sets `run`, and returns nothing; or the exit status where that is all there is to do, with what
-/// --help or --version print, or one line on standard error.
-std::optional<int> parse_command_line(int argc, char** argv, Run& run);
+/// A command as a program has it: one of the above.
+using AddCommand = void (*)(CLI::App& app, Run& run);
+
+/// The command line of a program of these commands: sets `run`, and returns nothing; or the exit status where that is
+/// all there is to do, with what --help or --version print, or one line on standard error.
+std::optional<int> parse_command_line(int argc, char** argv, std::span<const AddCommand> commands, Run& run);
+
+/// The whole program: parses, runs, and returns the exit status; one line on standard error where there is no result.
+int run_program(int argc, char** argv, std::span<const AddCommand> commands);
 
 } // namespace cinch

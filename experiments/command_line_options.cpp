@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "experiments/report/table.hpp"
-#include "experiments/simulation/find_scene.hpp"
+#include "experiments/shipped.hpp"
 #include "toolkit/deform/motion.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 #include "toolkit/surface/shapes.hpp"

@@ -5,7 +5,9 @@
 #include "cinch/bounds.hpp"
 #include "experiments/command_line.hpp"
 #include "experiments/command_line_options.hpp"
-#include "experiments/simulation/find_scene.hpp"
+#include "experiments/report/reproduce.hpp"
+#include "experiments/shipped.hpp"
+#include "experiments/view.hpp"
 #include "toolkit/surface/shapes.hpp"
 
 namespace cinch {

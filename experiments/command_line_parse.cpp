@@ -13,15 +13,6 @@ namespace {
 
 constexpr int bad_usage = 2;
 
-// In the order in which --help lists them.
-constexpr void (*commands[])(CLI::App&, Run&) = {
-#ifdef CINCH_EXACT
-    add_verify,  add_cost,     add_tightness, add_corners, add_fuzz,      add_stability,
-#endif
-    add_scaling, add_simulate, add_collide,   add_view,    add_reproduce, add_report,
-    add_study,   add_merge,    add_schema,
-};
-
 // Levenshtein's.
 std::size_t distance(const std::string& a, const std::string& b)
 {
@@ -80,7 +71,7 @@ int refuse(const std::string& why)
 
 } // namespace
 
-std::optional<int> parse_command_line(int argc, char** argv, Run& run)
+std::optional<int> parse_command_line(int argc, char** argv, std::span<const AddCommand> commands, Run& run)
 {
     CLI::App app{"cinch: tight, proven bounds for surfaces deformed by few simulation nodes", "cinch"};
     app.require_subcommand(1);
@@ -97,7 +88,7 @@ std::optional<int> parse_command_line(int argc, char** argv, Run& run)
                "  130  interrupted (Ctrl-C; 143 by SIGTERM): results so far are printed and say\n"
                "       that they are not all; a second Ctrl-C ends the command at once\n"
                "An output appears when it is whole; until then it is NAME.XXXXXX.part beside it.");
-    for (const auto add : commands)
+    for (const AddCommand add : commands)
         add(app, run);
     if (argc == 1)
         return refuse("no command given (see 'cinch --help')");

@@ -2,7 +2,9 @@
 // The commands that go past one run and one machine.
 #include "experiments/command_line.hpp"
 #include "experiments/command_line_options.hpp"
+#include "experiments/merge.hpp"
 #include "experiments/records/schema.hpp"
+#include "experiments/study/study.hpp"
 
 namespace cinch {
 

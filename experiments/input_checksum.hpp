@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "experiments/input.hpp"
-#include "toolkit/simulate/frame_file.hpp"
+#include "toolkit/surface/checksum.hpp"
 
 namespace cinch {
 

@@ -13,7 +13,7 @@
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/or_leave.hpp"
 #include "experiments/simulation/find_scene.hpp"
-#include "toolkit/simulate/frame_file.hpp"
+#include "toolkit/surface/checksum.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 
 namespace cinch {

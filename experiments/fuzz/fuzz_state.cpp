@@ -11,7 +11,7 @@
 
 #include "experiments/fuzz/fuzz_case.hpp"
 #include "experiments/report/whole_file.hpp"
-#include "toolkit/simulate/frame_file.hpp"
+#include "toolkit/surface/checksum.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 
 namespace cinch {

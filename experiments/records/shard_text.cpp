@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "cinch/surface.hpp"
-#include "toolkit/simulate/frame_file.hpp"
+#include "toolkit/surface/checksum.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 
 namespace cinch {

@@ -21,7 +21,7 @@
 #include "experiments/report/results.hpp"
 #include "experiments/report/stages.hpp"
 #include "experiments/report/whole_file.hpp"
-#include "toolkit/simulate/frame_file.hpp"
+#include "toolkit/surface/checksum.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 
 namespace cinch {

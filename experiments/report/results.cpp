@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "experiments/records/schema.hpp"
-#include "toolkit/simulate/frame_file.hpp"
+#include "toolkit/surface/checksum.hpp"
 
 namespace cinch {
 namespace {

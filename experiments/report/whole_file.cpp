@@ -18,7 +18,7 @@
 #include <unistd.h>
 
 #include "cinch/surface.hpp"
-#include "toolkit/simulate/frame_file.hpp"
+#include "toolkit/surface/checksum.hpp"
 
 namespace cinch {
 namespace {

@@ -11,7 +11,7 @@
 #include "experiments/guard_surface.hpp"
 #include "experiments/report/whole_file.hpp"
 #include "experiments/shipped.hpp"
-#include "toolkit/simulate/frame_file.hpp"
+#include "toolkit/surface/checksum.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 
 namespace cinch {
@@ -32,25 +32,6 @@ std::string with_elastic_model(const std::string& text, const std::string& model
 }
 
 } // namespace
-
-std::vector<std::string> shipped_scenes()
-{
-    std::vector<std::string> names;
-    std::error_code error;
-    for (const auto& entry : fs::directory_iterator(scene_folder(), error))
-        if (entry.path().extension() == ".json" && entry.path().stem() != "schema")
-            names.push_back(entry.path().stem().string());
-    std::sort(names.begin(), names.end());
-    return names;
-}
-
-bool is_scene(const std::string& name)
-{
-    if (fs::path(name).extension() == ".json")
-        return true;
-    const auto known = shipped_scenes();
-    return std::find(known.begin(), known.end(), name) != known.end();
-}
 
 FoundScene find_scene(const std::string& name, const SceneChanges& changes)
 {

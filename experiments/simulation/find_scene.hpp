@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/shipped.hpp"
 #include "toolkit/simulate/simulation.hpp"
 
 namespace cinch {
@@ -24,9 +25,6 @@ struct FoundScene {
     std::uint64_t identity; ///< of its text and the changes: a checkpoint continues only the same
 };
 
-/// Names of the scenes that come with the program.
-std::vector<std::string> shipped_scenes();
-bool is_scene(const std::string& name_or_file);
 /// Of a shipped scene or a .json file. Throws InputError.
 FoundScene find_scene(const std::string& name_or_file, const SceneChanges& changes);
 

@@ -12,7 +12,7 @@
 #include "experiments/report/interrupt.hpp"
 #include "experiments/study/measure_cell.hpp"
 #include "experiments/study/summary.hpp"
-#include "toolkit/simulate/frame_file.hpp"
+#include "toolkit/surface/checksum.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 
 namespace cinch {

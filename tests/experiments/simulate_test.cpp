@@ -14,6 +14,7 @@
 #include "experiments/simulation/find_scene.hpp"
 #include "tests/support.hpp"
 #include "toolkit/simulate/frame_file.hpp"
+#include "toolkit/surface/checksum.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 
 using namespace cinch;

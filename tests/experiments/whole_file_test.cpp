@@ -14,7 +14,7 @@
 #include "experiments/report/line_file.hpp"
 #include "experiments/report/whole_file.hpp"
 #include "tests/support.hpp"
-#include "toolkit/simulate/frame_file.hpp"
+#include "toolkit/surface/checksum.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 
 using namespace cinch;

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "cinch/surface.hpp"
+#include "toolkit/surface/checksum.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 
 namespace cinch {
@@ -30,16 +31,6 @@ template <class T> T get(const std::string& bytes, std::size_t& place)
 }
 
 } // namespace
-
-std::uint64_t checksum(std::string_view bytes, std::uint64_t before)
-{
-    std::uint64_t hash = before;
-    for (const char c : bytes) {
-        hash ^= static_cast<unsigned char>(c);
-        hash *= 0x100000001b3u;
-    }
-    return hash;
-}
 
 std::size_t FrameLayout::header_bytes() const { return 24 + 4 * nodes.size(); }
 std::size_t FrameLayout::frame_bytes() const

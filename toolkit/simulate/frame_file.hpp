@@ -47,9 +47,4 @@ struct FrameFile {
 };
 FrameFile read_frames(const std::filesystem::path& path);
 
-/// FNV-1a, 64 bits; of all bytes before and these, given that of those before. A single changed byte always changes it:
-/// each step maps states one to one.
-inline constexpr std::uint64_t checksum_of_nothing = 0xcbf29ce484222325u;
-std::uint64_t checksum(std::string_view bytes, std::uint64_t before = checksum_of_nothing);
-
 } // namespace cinch
