@@ -18,7 +18,7 @@
 namespace cinch {
 namespace {
 
-struct Row {
+struct CostRow {
     int kdop;
     std::string method, arithmetic, guarantee;
     bool proven;
@@ -30,7 +30,7 @@ struct Row {
 };
 
 // Faster, tighter and proven, or as good in each and better in one: then the other need not be considered.
-Verdict dominates(const Row& a, const Row& b)
+Verdict dominates(const CostRow& a, const CostRow& b)
 {
     if (a.looseness > b.looseness * (1 + 1e-12) || a.proven < b.proven)
         return Verdict::fails;
@@ -41,10 +41,10 @@ Verdict dominates(const Row& a, const Row& b)
 }
 
 // Of a row: nothing else dominates it.
-Verdict pareto(const std::vector<Row>& rows, const Row& row)
+Verdict pareto(const std::vector<CostRow>& rows, const CostRow& row)
 {
     std::vector<Verdict> all{Verdict::holds};
-    for (const Row& other : rows)
+    for (const CostRow& other : rows)
         if (&other != &row) {
             const Verdict is = dominates(other, row);
             all.push_back(is == Verdict::holds ? Verdict::fails : is == Verdict::fails ? Verdict::holds : is);
@@ -52,7 +52,7 @@ Verdict pareto(const std::vector<Row>& rows, const Row& row)
     return all_of(all);
 }
 
-std::vector<Row> measure(const CostSample& sample, int kdop, double seconds, Load& load)
+std::vector<CostRow> measure(const CostSample& sample, int kdop, double seconds, Load& load)
 {
     const auto k = static_cast<std::size_t>(kdop);
     std::vector<CostContestant> contestants = scalar_contestants(sample, kdop);
@@ -85,21 +85,21 @@ std::vector<Row> measure(const CostSample& sample, int kdop, double seconds, Loa
                          [&](const CostContestant& c) { return c.method == method && c.arithmetic == arithmetic; }) -
             contestants.begin());
     };
-    std::vector<Row> rows;
+    std::vector<CostRow> rows;
     for (std::size_t i = 0; i < contestants.size(); ++i) {
         const CostContestant& c = contestants[i];
         const std::size_t exact = find(c.method, "rational"),
                           plain = std::min(find(c.method, "double"), find(c.method, "double kernel"));
-        Row row{kdop,
-                c.method,
-                c.arithmetic,
-                c.guarantee,
-                c.proven,
-                times.of(i) / Range(static_cast<double>(sample.bvs.size())),
-                times.ratio(i, plain),
-                0,
-                NAN,
-                NAN};
+        CostRow row{kdop,
+                    c.method,
+                    c.arithmetic,
+                    c.guarantee,
+                    c.proven,
+                    times.of(i) / Range(static_cast<double>(sample.bvs.size())),
+                    times.ratio(i, plain),
+                    0,
+                    NAN,
+                    NAN};
         std::size_t below = 0, measured = 0;
         double worst = 0;
         for (std::size_t b = 0; b < sample.bvs.size(); ++b) {
@@ -127,7 +127,7 @@ std::vector<Row> measure(const CostSample& sample, int kdop, double seconds, Loa
         row.worst_below = worst;
         rows.push_back(row);
     }
-    for (Row& row : rows)
+    for (CostRow& row : rows)
         row.pareto = pareto(rows, row);
     return rows;
 }
@@ -150,7 +150,7 @@ std::vector<Figure> figures_of(const std::vector<DualGap>& gaps)
     return figures;
 }
 
-void print_tables(const Input& input, const CostSample& sample, const std::vector<Row>& rows,
+void print_tables(const Input& input, const CostSample& sample, const std::vector<CostRow>& rows,
                   const std::vector<DualGap>& gaps, const Load& load)
 {
     for (const std::string& line : input.report)
@@ -160,7 +160,7 @@ void print_tables(const Input& input, const CostSample& sample, const std::vecto
         const int kdop = rows[first].kdop;
         std::vector<std::vector<std::string>> lines;
         for (; first < rows.size() && rows[first].kdop == kdop; ++first) {
-            const Row& r = rows[first];
+            const CostRow& r = rows[first];
             lines.push_back({r.method, r.arithmetic, grouped(static_cast<std::size_t>(r.ns.value + 0.5)),
                              fmt::format("{:.2f}{}", r.ratio_to_double.value, mark(r.ratio_to_double)),
                              fmt::format("{:.4f}", r.looseness),
@@ -213,7 +213,7 @@ int cost(const CostOptions& options)
         sample.bvs.push_back((bvh.level[l] + bvh.level[l + 1]) / 2);
     catch_interrupt();
     std::vector<DualGap> gaps;
-    std::vector<Row> rows;
+    std::vector<CostRow> rows;
     Load load;
     std::size_t done = 0;
     const std::size_t wanted = 1 + others.size() + options.kdops.size();
@@ -243,7 +243,7 @@ int cost(const CostOptions& options)
                                                                        options.kdops.size() == 1 ? "k-DOP" : "k-DOPs")};
     std::vector<nlohmann::ordered_json> records;
     auto number = [](double x) { return std::isfinite(x) ? nlohmann::ordered_json(x) : nlohmann::ordered_json(); };
-    for (const Row& r : rows)
+    for (const CostRow& r : rows)
         records.push_back({{"experiment", "cost"},
                            {"input", input.name},
                            {"method", r.method},

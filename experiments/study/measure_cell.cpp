@@ -39,8 +39,11 @@ double width(std::span<const double> supports)
 }
 
 // What is deformed, and its true bounds; owned, as a call that is left behind goes on.
-struct Scene {
-    Scene(const InputOptions& what, std::size_t leaf) : input(load_input(what)), bvh(build_bvh(input.surface, leaf)) {}
+struct PreparedCell {
+    PreparedCell(const InputOptions& what, std::size_t leaf)
+        : input(load_input(what)), bvh(build_bvh(input.surface, leaf))
+    {
+    }
     Input input;
     Bvh bvh;
 };
@@ -70,7 +73,7 @@ Json key(const InputOptions& what, const Input& input, const Contestant& c)
 }
 
 // One frame of one contestant.
-void take_frame(const Plan& plan, const InputOptions& what, const Scene& scene, std::size_t frame,
+void take_frame(const Plan& plan, const InputOptions& what, const PreparedCell& scene, std::size_t frame,
                 std::span<const double> truth, std::span<const double> supports, Contestant& c)
 {
     const std::size_t k = c.kdop;
@@ -105,7 +108,7 @@ void take_frame(const Plan& plan, const InputOptions& what, const Scene& scene, 
     }
 }
 
-void put_rows(const InputOptions& what, const Scene& scene, Detail detail, Contestant& c, Rows& out)
+void put_rows(const InputOptions& what, const PreparedCell& scene, Detail detail, Contestant& c, Rows& out)
 {
     const Json own = key(what, scene.input, c);
     Json row = own;
@@ -133,7 +136,7 @@ void put_rows(const InputOptions& what, const Scene& scene, Detail detail, Conte
 
 Rows measure_cell(const Plan& plan, const InputOptions& what)
 {
-    const auto scene = or_leave([what, leaf = plan.leaf] { return std::make_shared<const Scene>(what, leaf); });
+    const auto scene = or_leave([what, leaf = plan.leaf] { return std::make_shared<const PreparedCell>(what, leaf); });
     const Input& input = scene->input;
     std::vector<Contestant> contestants;
     for (const Methods methods : plan.methods)

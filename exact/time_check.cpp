@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exact/time_check.hpp"
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <mutex>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include "exact/number.hpp"
+
+namespace cinch::exact {
+namespace {
+
+constexpr int most_halvings = 48;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+using Place = std::array<Interval, 3>;
+
+Interval interval_of(const Enclosure& x) { return {x.low, x.high}; }
+
+// Σ w_j (A_j y + t_j), each entry enclosed.
+Place place_of(const Weights::Row& row, const Vec3& y, const std::vector<MapEnclosure>& maps)
+{
+    Place out{Interval(0), Interval(0), Interval(0)};
+    for (std::size_t i = 0; i < row.node.size(); ++i) {
+        const MapEnclosure& map = maps[row.node[i]];
+        for (int r = 0; r < 3; ++r) {
+            Interval x = interval_of(map.m[r][3]);
+            for (int c = 0; c < 3; ++c)
+                x += interval_of(map.m[r][c]) * Interval(y[c]);
+            out[static_cast<std::size_t>(r)] += Interval(row.weight[i]) * x;
+        }
+    }
+    return out;
+}
+
+Interval along(const Axis& axis, bool against, const Place& x)
+{
+    Interval sum(0);
+    for (std::size_t r = 0; r < 3; ++r)
+        if (axis[r] != 0)
+            sum += (axis[r] > 0) != against ? x[r] : -x[r];
+    return sum;
+}
+
+using Maps = std::shared_ptr<const std::vector<MapEnclosure>>;
+
+struct Piece {
+    double a, b, piece_a, piece_b;
+    int halvings;
+    Maps at_a, at_b;
+    std::vector<std::uint32_t> open; // places in vertices_
+};
+
+} // namespace
+
+void TimeVerdict::add(const TimeVerdict& other)
+{
+    bounds += other.bounds;
+    violated += other.violated;
+    undecided += other.undecided;
+    pieces += other.pieces;
+    if (other.worst && (!worst || other.worst->at_least - other.worst->bound > worst->at_least - worst->bound))
+        worst = other.worst;
+}
+
+TimeChecker::TimeChecker(const DeformableSurface& surface, const Bvh& bvh, const ClipEnclosure& clip, int kdop,
+                         std::function<void()> poll)
+    : surface_(surface), bvh_(bvh), clip_(clip), kdop_(kdop), poll_(std::move(poll))
+{
+    std::vector<std::vector<std::uint32_t>> containing(surface.mesh.vertices.size());
+    for (std::uint32_t i = 0; i < bvh.bvs.size(); ++i) {
+        const Bv& bv = bvh.bvs[i];
+        for (std::uint32_t t = bv.first_triangle; t < bv.first_triangle + bv.triangle_count; ++t)
+            for (const std::uint32_t v : surface.mesh.triangles[bvh.triangle[t]])
+                if (containing[v].empty() || containing[v].back() != i)
+                    containing[v].push_back(i);
+    }
+    row_ = {0};
+    for (std::uint32_t v = 0; v < containing.size(); ++v)
+        if (!containing[v].empty()) {
+            vertices_.push_back(v);
+            bv_.insert(bv_.end(), containing[v].begin(), containing[v].end());
+            row_.push_back(static_cast<std::uint32_t>(bv_.size()));
+        }
+}
+
+TimeVerdict TimeChecker::operator()(double a_s, double b_s, std::span<const double> supports) const
+{
+    const auto k = static_cast<std::size_t>(kdop_);
+    const auto axes = axes_of(kdop_);
+    TimeVerdict out;
+    out.bounds = supports.size();
+    // The least support of the BVs of each vertex decides for all of them.
+    std::vector<double> least(vertices_.size() * k, infinity);
+    for (std::size_t i = 0; i < vertices_.size(); ++i)
+        for (std::uint32_t n = row_[i]; n < row_[i + 1]; ++n)
+            for (std::size_t d = 0; d < k; ++d) {
+                const double support = supports[bv_[n] * k + d];
+                least[i * k + d] = std::isnan(support) ? -infinity : std::min(least[i * k + d], support);
+            }
+    std::vector<char> refuted(supports.size()), left_open(supports.size());
+    std::mutex mutex;
+
+    std::vector<double> cuts{a_s};
+    for (const double key : clip_.keys())
+        if (key > a_s && key < b_s)
+            cuts.push_back(key);
+    cuts.push_back(b_s);
+    std::vector<Piece> pieces;
+    std::vector<std::uint32_t> all(vertices_.size());
+    for (std::uint32_t i = 0; i < all.size(); ++i)
+        all[i] = i;
+    for (std::size_t i = cuts.size() - 1; i-- > 0;)
+        pieces.push_back({cuts[i], cuts[i + 1], cuts[i], cuts[i + 1], 0, nullptr, nullptr, all});
+    pieces.push_back({b_s, b_s, b_s, b_s, 0, nullptr, nullptr, all}); // to which a curve may jump
+    std::vector<MapEnclosure> slopes, ignored;
+    auto maps_at = [&](double t, const Piece& piece) {
+        const auto maps = std::make_shared<std::vector<MapEnclosure>>();
+        clip_.at(t, t, piece.piece_a, piece.piece_b, *maps, ignored);
+        return Maps(maps);
+    };
+    while (!pieces.empty()) {
+        poll_();
+        Piece piece = std::move(pieces.back());
+        pieces.pop_back();
+        if (!piece.at_a)
+            piece.at_a = maps_at(piece.a, piece);
+        if (!piece.at_b)
+            piece.at_b = maps_at(piece.b, piece);
+        ++out.pieces;
+        const double middle = piece.a + (piece.b - piece.a) / 2;
+        const Maps at_middle = maps_at(middle, piece);
+        clip_.at(piece.a, piece.b, piece.piece_a, piece.piece_b, ignored, slopes);
+        std::vector<char> open(piece.open.size());
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, open.size(), 256), [&](const auto& range) {
+            const DirectedRounding rounding;
+            const Interval step = Interval(piece.a, piece.b) - Interval(middle);
+            for (std::size_t n = range.begin(); n < range.end(); ++n) {
+                const std::uint32_t i = piece.open[n];
+                const std::uint32_t v = vertices_[i];
+                const Vec3& y = surface_.mesh.vertices[v];
+                auto place = [&](const std::vector<MapEnclosure>& maps) {
+                    return place_of(surface_.weights.of(v), y, maps);
+                };
+                const Place here = place(*at_middle), slope = place(slopes);
+                std::optional<Place> first, last; // at the ends
+                Place swept;
+                for (std::size_t r = 0; r < 3; ++r)
+                    swept[r] = here[r] + slope[r] * step;
+                for (std::size_t d = 0; d < k; ++d) {
+                    const double limit = least[i * k + d];
+                    auto reach = [&](const Place& x) { return along(axes[d / 2], d % 2 == 1, x); };
+                    if (limit == infinity || reach(swept).sup() <= limit)
+                        continue;
+                    if (!first) {
+                        first = place(*piece.at_a);
+                        last = place(*piece.at_b);
+                    }
+                    // Where the slope has one sign the greatest value is at an end.
+                    const Interval rise = reach(slope), at_first = reach(*first), at_last = reach(*last);
+                    if (rise.inf() >= 0 ? at_last.sup() <= limit : rise.sup() <= 0 && at_first.sup() <= limit)
+                        continue;
+                    open[n] = true;
+                    const double at_least = std::max({reach(here).inf(), at_first.inf(), at_last.inf()});
+                    if (!(at_least > limit))
+                        continue;
+                    const double when = at_least == at_first.inf()  ? piece.a
+                                        : at_least == at_last.inf() ? piece.b
+                                                                    : middle;
+                    const std::lock_guard lock(mutex);
+                    for (std::uint32_t at = row_[i]; at < row_[i + 1]; ++at) {
+                        const std::size_t bound = bv_[at] * k + d;
+                        if (supports[bound] >= at_least)
+                            continue;
+                        refuted[bound] = true;
+                        if (!out.worst || at_least - supports[bound] > out.worst->at_least - out.worst->bound)
+                            out.worst = Outside{bv_[at], d, v, when, supports[bound], at_least};
+                    }
+                    least[i * k + d] = infinity; // said; other directions go on
+                }
+            }
+        });
+        std::vector<std::uint32_t> rest;
+        for (std::size_t n = 0; n < open.size(); ++n)
+            if (open[n])
+                rest.push_back(piece.open[n]);
+        if (rest.empty())
+            continue;
+        if (piece.halvings < most_halvings && middle > piece.a && middle < piece.b) {
+            pieces.push_back(
+                {middle, piece.b, piece.piece_a, piece.piece_b, piece.halvings + 1, at_middle, piece.at_b, rest});
+            pieces.push_back({piece.a, middle, piece.piece_a, piece.piece_b, piece.halvings + 1, piece.at_a, at_middle,
+                              std::move(rest)});
+        } else {
+            for (const std::uint32_t i : rest)
+                for (std::uint32_t at = row_[i]; at < row_[i + 1]; ++at)
+                    for (std::size_t d = 0; d < k; ++d)
+                        if (least[i * k + d] < infinity)
+                            left_open[bv_[at] * k + d] = true;
+        }
+    }
+    for (std::size_t i = 0; i < refuted.size(); ++i) {
+        out.violated += refuted[i] != 0;
+        out.undecided += left_open[i] && !refuted[i];
+    }
+    return out;
+}
+
+} // namespace cinch::exact

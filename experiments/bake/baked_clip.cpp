@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/bake/baked_clip.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/measure/box_radius.hpp"
+#include "experiments/report/interrupt.hpp"
+
+namespace cinch {
+namespace {
+
+constexpr double shortest_s = 1.0 / 30, worth_cutting = 0.9;
+
+double radius_of(std::span<const double> supports, std::size_t bv, int kdop)
+{
+    return box_radius(supports.subspan(bv * static_cast<std::size_t>(kdop), 6));
+}
+
+void take(std::vector<double>& to, std::span<const double> from)
+{
+    for (std::size_t i = 0; i < to.size(); ++i)
+        to[i] = std::max(to[i], from[i]);
+}
+
+// Times between two keys, both included.
+template <class F> void each_time(const TimedMotion& motion, int samples, double a, double b, F&& use)
+{
+    std::vector<double> cuts{a};
+    for (const double key : motion.keys)
+        if (key > a && key < b)
+            cuts.push_back(key);
+    cuts.push_back(b);
+    for (std::size_t i = 1; i < cuts.size(); ++i)
+        for (int s = i == 1 ? 0 : 1; s <= samples; ++s)
+            use(s == samples ? cuts[i] : cuts[i - 1] + (cuts[i] - cuts[i - 1]) * s / samples);
+}
+
+} // namespace
+
+std::vector<BakedInterval> bake_clip(IntervalRefitter& refit, const TimedMotion& motion, const BakeOptions& options,
+                                     std::size_t supports)
+{
+    auto bounded = [&](double a, double b) {
+        throw_if_interrupted();
+        BakedInterval out{a, b, std::vector<double>(supports), 0};
+        out.intervals = bound_over(refit, motion, a, b, options.tolerance, out.supports).intervals;
+        return out;
+    };
+    const double first = motion.first_s(), last = motion.last_s(), length = last - first;
+    std::vector<BakedInterval> out;
+    if (options.whole || !(length > 0)) {
+        out.push_back(bounded(first, last));
+    } else if (options.interval_s > 0) {
+        const auto count = static_cast<std::size_t>(std::ceil(length / options.interval_s));
+        auto cut = [&](std::size_t i) {
+            return i == count ? last : first + static_cast<double>(i) * options.interval_s;
+        };
+        for (std::size_t i = 0; i < count; ++i)
+            out.push_back(bounded(cut(i), cut(i + 1)));
+    } else {
+        std::vector<BakedInterval> open{bounded(first, last)}; // the earliest last
+        while (!open.empty()) {
+            BakedInterval whole = std::move(open.back());
+            open.pop_back();
+            const double a = whole.first_s, b = whole.last_s, middle = a + (b - a) / 2;
+            if (b - a >= 2 * shortest_s) {
+                BakedInterval one = bounded(a, middle), two = bounded(middle, b);
+                const double halves = (radius_of(one.supports, 0, options.bounds.kdop) +
+                                       radius_of(two.supports, 0, options.bounds.kdop)) /
+                                      2;
+                if (halves < worth_cutting * radius_of(whole.supports, 0, options.bounds.kdop)) {
+                    open.push_back(std::move(two));
+                    open.push_back(std::move(one));
+                    continue;
+                }
+            }
+            out.push_back(std::move(whole));
+        }
+    }
+    return out;
+}
+
+BakedFigures figures_of(const DeformableSurface& surface, const Bvh& bvh, const TimedMotion& motion,
+                        const BakeOptions& options, const std::vector<BakedInterval>& baked)
+{
+    const int kdop = options.bounds.kdop;
+    const std::size_t count = bvh.bvs.size() * static_cast<std::size_t>(kdop);
+    const double least = -std::numeric_limits<double>::infinity();
+    BakedFigures out;
+    out.key_segments = motion.keys.size() - 1;
+    Refitter instants(bvh, surface, options.bounds), vertices(bvh, surface, {Method::vertices, kdop, Rounding::plain});
+    std::vector<double> now(count), truth(count, least), all(count, least), at_keys(count, least), at_30(count, least);
+    double sum = 0, number = 0;
+    for (const BakedInterval& interval : baked) {
+        throw_if_interrupted();
+        std::vector<double> hull(count, least);
+        each_time(motion, options.samples, interval.first_s, interval.last_s, [&](double t) {
+            const std::vector<AffineMap> maps = motion.at(t);
+            instants(maps, now);
+            take(hull, now);
+            vertices(maps, now);
+            take(truth, now);
+            for (std::size_t d = 0; d < 6; ++d)
+                out.missed_by_us = std::max(out.missed_by_us, now[d] - interval.supports[d]);
+        });
+        for (std::size_t bv = 0; bv < bvh.bvs.size(); ++bv) {
+            const double ratio = radius_of(interval.supports, bv, kdop) / radius_of(hull, bv, kdop);
+            out.time_max = std::max(out.time_max, ratio);
+            sum += ratio;
+            ++number;
+        }
+        take(all, interval.supports);
+        out.intervals += interval.intervals;
+    }
+    out.time_mean = sum / number;
+    auto sampled = [&](std::vector<double>& to, double t) {
+        vertices(motion.at(t), now);
+        take(to, now);
+    };
+    for (const double key : motion.keys)
+        sampled(at_keys, key);
+    const double length = motion.last_s() - motion.first_s();
+    const int frames = static_cast<int>(std::round(length * 30));
+    for (int i = 0; i <= frames; ++i)
+        sampled(at_30, frames ? motion.first_s() + length * i / frames : motion.first_s());
+    const double half_diagonal = radius_of(truth, 0, kdop);
+    for (std::size_t d = 0; d < 6; ++d) {
+        out.missed_keys = std::max(out.missed_keys, (truth[d] - at_keys[d]) / half_diagonal);
+        out.missed_30fps = std::max(out.missed_30fps, (truth[d] - at_30[d]) / half_diagonal);
+    }
+    out.missed_by_us = std::max(0.0, out.missed_by_us / half_diagonal);
+    out.root = radius_of(all, 0, kdop) / half_diagonal;
+    double leaves = 0, leaf_count = 0;
+    for (std::size_t bv = 0; bv < bvh.bvs.size(); ++bv)
+        if (bvh.bvs[bv].is_leaf()) {
+            leaves += radius_of(all, bv, kdop) / radius_of(truth, bv, kdop);
+            ++leaf_count;
+        }
+    out.leaves = leaves / leaf_count;
+    return out;
+}
+
+std::size_t bvs_down_to(const Bvh& bvh, int level)
+{
+    const std::size_t levels = bvh.level.size() - 1;
+    return level < 0 ? bvh.bvs.size() : bvh.level[std::min<std::size_t>(static_cast<std::size_t>(level) + 1, levels)];
+}
+
+std::size_t level_of(const Bvh& bvh, std::size_t bv)
+{
+    return static_cast<std::size_t>(std::upper_bound(bvh.level.begin(), bvh.level.end(), bv) - bvh.level.begin()) - 1;
+}
+
+} // namespace cinch

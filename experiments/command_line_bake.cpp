@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <limits>
+
+#include "cinch/bounds.hpp"
+#include "experiments/bake/bake.hpp"
+#include "experiments/command_line.hpp"
+#include "experiments/command_line_options.hpp"
+
+namespace cinch {
+
+void add_bake(CLI::App& app, Run& run)
+{
+    const auto options = std::make_shared<BakeOptions>();
+    BakeOptions& o = *options;
+    CLI::App& command = *app.add_subcommand("bake", "bounds for all times of clips, written down");
+    command.callback([options, &run] { run = [options] { return bake(*options); }; });
+    add_input(command, o.input);
+    const auto option = options_of(command);
+    add_methods(command, o.bounds.methods);
+    add_arithmetic(command, o.bounds.precision, o.bounds.passes);
+    option("--kdop", o.bounds.kdop, "directions of the bounds: " + kdop_names() + " [6]")
+        ->check(CLI::IsMember(std::vector(kdops.begin(), kdops.end())))
+        ->option_text("K");
+    option("--leaf", o.leaf, "most triangles per leaf [16]")->check(CLI::Range(1, 1000000))->option_text("N");
+    option("--level", o.level, "write the BVs down to this level of the tree; 0: the character's alone; -1: all [0]")
+        ->check(CLI::Range(-1, std::numeric_limits<int>::max()))
+        ->option_text("L");
+    CLI::Option* interval =
+        option("--interval", o.interval_s, "seconds of one interval [cut where it makes boxes a tenth smaller]")
+            ->check(within(1e-6, 1e9))
+            ->option_text("S");
+    command.add_flag("--whole", o.whole, wrapped("one interval per clip"))->excludes(interval);
+    option("--tolerance", o.tolerance,
+           "by how much of a BV's half extent a bound over time may exceed its bounds at instants [0.01]")
+        ->check(within(1e-6, 1e6))
+        ->option_text("X");
+    command.add_flag("--prove", o.prove,
+                     wrapped("prove every bound at every BV, by exact intervals over time on the transforms"));
+    command.add_flag("--report", o.report,
+                     wrapped("figures too: what time adds, the truth, and what boxes of frames alone miss"));
+    option("--samples", o.samples, "of the truth between two keys, for --report [30]")
+        ->check(CLI::Range(1, 1000000))
+        ->option_text("N");
+    option("--npz", o.npz, "write a NumPy archive")->option_text("FILE.npz");
+    option("--usd", o.usd, "write a USD layer with the character's box as time samples of extent")
+        ->option_text("FILE.usda");
+    CLI::Option* json = command.add_flag("--json", o.output.json, "JSON Lines on standard output and nothing else");
+    command.add_flag("--csv", o.output.csv, "the same as comma-separated values")->excludes(json);
+    option("--sabotage", o.sabotage,
+           "for tests: damage the bounds, to see that it is found: no-remainder (chords alone), half-bump, first-half "
+           "(the first pose of every interval)")
+        ->transform(one_of<TimeSabotage>({{"no-remainder", TimeSabotage::no_remainder},
+                                          {"half-bump", TimeSabotage::half_bump},
+                                          {"first-half", TimeSabotage::first_half}}))
+        ->option_text("KIND");
+    command.footer(R"(A bound holds at every real time of its interval, keys or not: each vertex stays
+below the parabola through the bounds at both ends that its acceleration allows.
+
+Examples:
+  cinch bake robot.glb                       all clips, the character's box
+  cinch bake robot.glb --whole --level -1 --json > bounds.jsonl
+  cinch bake robot.glb --clip Robot_Dance --interval 0.25 --npz dance.npz
+  cinch bake robot.glb --usd bounds.usda     to be sublayered
+  cinch bake robot.glb --level -1 --prove    and an exact proof of each
+  cinch bake robot.glb --report              how tight, and what frames miss
+
+Exit status: 0 done, 1 a bound refuted, 2 bad usage or input, 130 interrupted
+(files are not written).)");
+}
+
+} // namespace cinch

@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Bounds over time of random characters: proven by the exact side, which shares no formula with them, and found wrong
+// by it where a term of theirs is dropped.
+#include <cmath>
+#include <random>
+
+#include <catch2/catch.hpp>
+
+#include "exact/time_check.hpp"
+#include "tests/support.hpp"
+#include "toolkit/time/bound_over.hpp"
+#include "toolkit/time/character_motion.hpp"
+
+using namespace cinch;
+
+namespace {
+
+using Random = std::mt19937_64;
+
+double between(Random& random, double low, double high)
+{
+    return std::uniform_real_distribution<double>(low, high)(random);
+}
+std::size_t one_of(Random& random, std::size_t count)
+{
+    return std::uniform_int_distribution<std::size_t>(0, count - 1)(random);
+}
+
+// As files have them: floats.
+double stored(double x) { return static_cast<double>(static_cast<float>(x)); }
+
+std::array<double, 4> quaternion(Random& random)
+{
+    std::normal_distribution<double> normal;
+    std::array<double, 4> q;
+    double square = 0;
+    for (double& x : q) {
+        x = normal(random);
+        square += x * x;
+    }
+    for (double& x : q)
+        x = stored(x / std::sqrt(square));
+    return q;
+}
+
+// Keys as files have them, and the awkward ones: equal, of the other sign, nearly the same, half a turn away.
+std::array<double, 4> next_key(Random& random, const std::array<double, 4>& q)
+{
+    std::array<double, 4> out = q;
+    switch (one_of(random, 6)) {
+    case 0:
+        return out;
+    case 1:
+        for (double& x : out)
+            x = -x;
+        return out;
+    case 2:
+        for (double& x : out)
+            x = stored(x + between(random, -1e-6, 1e-6));
+        return out;
+    case 3: // orthogonal but for a little: nearly half a turn
+        return {stored(-q[1] + 1e-3), q[0], stored(-q[3]), q[2]};
+    default:
+        return quaternion(random);
+    }
+}
+
+Curve random_curve(Random& random, std::uint32_t bone, Curve::Target target)
+{
+    Curve curve;
+    curve.bone = bone;
+    curve.target = target;
+    curve.interpolation = std::array{Curve::Interpolation::linear, Curve::Interpolation::linear,
+                                     Curve::Interpolation::cubic_spline, Curve::Interpolation::step}[one_of(random, 4)];
+    const std::size_t keys = 1 + one_of(random, 4);
+    double t = stored(between(random, -0.5, 0.5));
+    std::array<double, 4> value = quaternion(random);
+    for (std::size_t k = 0; k < keys; ++k) {
+        curve.time_s.push_back(t);
+        t = stored(t + between(random, 0.01, 1));
+        auto tangent = [&] {
+            const double size = one_of(random, 8) == 0 ? 20 : 1;
+            return std::array{stored(between(random, -size, size)), stored(between(random, -size, size)),
+                              stored(between(random, -size, size)), stored(between(random, -size, size))};
+        };
+        if (target == Curve::Target::translation)
+            value = {stored(between(random, -2, 2)), stored(between(random, -2, 2)), stored(between(random, -2, 2)), 0};
+        else if (target == Curve::Target::scale)
+            value = {stored(between(random, 0.2, 2)), stored(between(random, 0.2, 2)), stored(between(random, 0.2, 2)),
+                     0};
+        else
+            value = next_key(random, value);
+        const bool cubic = curve.interpolation == Curve::Interpolation::cubic_spline;
+        if (cubic)
+            curve.value.push_back(tangent());
+        curve.value.push_back(value);
+        if (cubic)
+            curve.value.push_back(tangent());
+    }
+    return curve;
+}
+
+struct Subject {
+    Character character;
+    DeformableSurface surface;
+    Bvh bvh;
+};
+
+// A chain of bones, the surface a strip of triangles along them.
+Subject random_subject(Random& random)
+{
+    Subject out;
+    Character& c = out.character;
+    const std::uint32_t bones = 1 + static_cast<std::uint32_t>(one_of(random, 4));
+    for (std::uint32_t b = 0; b < bones; ++b) {
+        Bone bone;
+        bone.parent = static_cast<std::int64_t>(b) - 1;
+        bone.translation = {stored(between(random, -1, 1)), 1, 0};
+        bone.rotation = quaternion(random);
+        if (one_of(random, 4) == 0) { // centimetres on metres
+            const double s = b % 2 ? 100 : 0.01;
+            bone.scale = {s, s, s};
+        }
+        c.bones.push_back(bone);
+        AffineMap bind = identity_map;
+        for (auto& row : bind.m)
+            for (double& x : row)
+                x = stored(x + between(random, -0.3, 0.3));
+        c.joints.push_back({b, bind});
+        for (const auto target : {Curve::Target::translation, Curve::Target::rotation, Curve::Target::scale})
+            if (one_of(random, target == Curve::Target::rotation ? 1 : 3) == 0)
+                c.rest.curves.push_back(random_curve(random, b, target));
+    }
+    c.rest.first_s = -0.25;
+    c.rest.last_s = 1.5;
+    Influences influences;
+    influences.node_count = bones;
+    for (std::uint32_t v = 0; v < 18; ++v) {
+        out.surface.mesh.vertices.emplace_back(stored(between(random, -1, 1)), stored(between(random, -1, 1)),
+                                               stored(between(random, -1, 1)));
+        for (std::uint32_t j = 0; j < bones; ++j)
+            if (j == v % bones || one_of(random, 2) == 0) {
+                influences.node.push_back(j);
+                influences.weight.push_back(between(random, 0.1, 1));
+            }
+        influences.row.push_back(static_cast<std::uint32_t>(influences.node.size()));
+        if (v >= 2)
+            out.surface.mesh.triangles.push_back({v - 2, v - 1, v});
+    }
+    out.surface.weights = to_dyadic(influences);
+    out.bvh = build_bvh(out.surface, 2);
+    return out;
+}
+
+exact::TimeVerdict verdict_on(const Subject& subject, const TimedMotion& motion, const RefitOptions& options,
+                              double tolerance)
+{
+    IntervalRefitter refit(subject.bvh, subject.surface, options);
+    std::vector<double> supports(subject.bvh.bvs.size() * static_cast<std::size_t>(options.kdop));
+    bound_over(refit, motion, motion.first_s(), motion.last_s(), tolerance, supports);
+    const exact::ClipEnclosure clip(subject.character, subject.character.rest);
+    return exact::TimeChecker(subject.surface, subject.bvh, clip, options.kdop, [] {})(motion.first_s(),
+                                                                                       motion.last_s(), supports);
+}
+
+} // namespace
+
+TEST_CASE("bounds over time hold at all times, and whatever is dropped from them is found")
+{
+    Random random(7);
+    std::size_t bounds = 0, undecided = 0, infinite_bounds = 0, dropped[3] = {};
+    for (std::size_t i = 0, cases = test::share_of(120); i < cases; ++i) {
+        const Subject subject = random_subject(random);
+        const TimedMotion motion = character_motion(subject.character, subject.character.rest, subject.surface);
+        const RefitOptions options{.methods = i % 3 == 0 ? Method::local : Method::best,
+                                   .kdop = kdops[i % kdops.size()],
+                                   .precision = i % 2 ? Precision::float64 : Precision::float32};
+        // Loose on purpose now and then, so that single intervals between keys are what is checked.
+        const double tolerance = i % 2 ? 1e6 : 0.01;
+        CAPTURE(i);
+        exact::TimeVerdict verdict;
+        try {
+            verdict = verdict_on(subject, motion, options, tolerance);
+        } catch (const InputError&) { // half a turn to the bit
+            continue;
+        }
+        CHECK(verdict.violated == 0);
+        bounds += verdict.bounds;
+        undecided += verdict.undecided;
+        for (std::size_t kind = 0; kind < 3; ++kind) {
+            TimedMotion wrong = motion;
+            wrong.over = [&motion, kind](double a, double b) {
+                MotionInterval out = motion.over(a, b);
+                for (std::size_t j = 0; j < out.limits.size(); ++j) {
+                    auto& limit = out.limits[j];
+                    if (kind == 0) { // no bump at all
+                        out.bend[j] = {};
+                        limit.remainder = limit.bump = 0;
+                    } else if (kind == 1) { // half of it
+                        for (auto& row : out.bend[j].m)
+                            for (double& x : row)
+                                x /= 2;
+                        limit.remainder = limit.bump = limit.path = 0;
+                    } else { // the end of the interval forgotten
+                        out.last[j] = out.first[j];
+                        limit.remainder = limit.bump = limit.path = 0;
+                    }
+                }
+                return out;
+            };
+            dropped[kind] += verdict_on(subject, wrong, options, 1e6).violated > 0;
+        }
+    }
+    INFO(bounds << " bounds, " << undecided << " undecided, " << infinite_bounds << " infinite");
+    CHECK(undecided == 0);
+    for (std::size_t kind = 0; kind < 3; ++kind)
+        CHECK(dropped[kind] > test::share_of(120) / 4);
+}
+
+TEST_CASE("joint matrices are as near to the exact ones as their errors say, at all times")
+{
+    Random random(11);
+    for (std::size_t i = 0, cases = test::share_of(200); i < cases; ++i) {
+        const Subject subject = random_subject(random);
+        const TimedMotion motion = character_motion(subject.character, subject.character.rest, subject.surface);
+        std::optional<exact::ClipEnclosure> clip;
+        try {
+            clip.emplace(subject.character, subject.character.rest);
+        } catch (const InputError&) {
+            continue;
+        }
+        for (std::size_t k = 1; k < motion.keys.size(); ++k) {
+            const double a = motion.keys[k - 1], b = motion.keys[k];
+            const MotionInterval interval = motion.over(a, b);
+            std::vector<exact::MapEnclosure> maps, slopes;
+            for (const bool last : {false, true}) {
+                clip->at(last ? b : a, last ? b : a, a, b, maps, slopes);
+                for (std::size_t v = 0; v < subject.surface.mesh.vertices.size(); ++v)
+                    for (const std::uint32_t j : subject.surface.weights.of(v).node) {
+                        const Vec3& y = subject.surface.mesh.vertices[v];
+                        const Vec3 computed = apply((last ? interval.last : interval.first)[j], y);
+                        for (int r = 0; r < 3; ++r) {
+                            double low = maps[j].m[r][3].low, high = maps[j].m[r][3].high,
+                                   wide = 1e-12 * computed.norm();
+                            for (int c = 0; c < 3; ++c) {
+                                const double x = maps[j].m[r][c].low * y[c], z = maps[j].m[r][c].high * y[c];
+                                low += std::min(x, z);
+                                high += std::max(x, z);
+                                wide += 1e-15 * (std::abs(x) + std::abs(z));
+                            }
+                            const double error = interval.limits[j].error;
+                            CHECK(computed[r] >= low - error - 1e-3 * wide);
+                            CHECK(computed[r] <= high + error + 1e-3 * wide);
+                        }
+                    }
+            }
+        }
+    }
+}
+
+TEST_CASE("the greatest value between two ends")
+{
+    const double infinity = HUGE_VAL;
+    CHECK(greatest_between(1, 2, 0, infinity) >= 2);
+    CHECK(greatest_between(1, 2, 0, infinity) < 2.0000001);
+    CHECK(greatest_between(1, 2, -5, infinity) < 2.0000001);      // convex: an end
+    CHECK(greatest_between(0, 0, 3, infinity) == Approx(3));      // symmetric: the bump
+    CHECK(greatest_between(0, 1, 1, infinity) == Approx(1.5625)); // 1/2 + 1 + 1/16
+    CHECK(greatest_between(0, 8, 1, infinity) == Approx(8));      // steep: an end
+    CHECK(greatest_between(0, 4, 1, infinity) == Approx(4));      // where both say the same
+    CHECK(greatest_between(0, 1, 10, 1) == Approx(1));            // no way to go further
+    CHECK(greatest_between(0, 0, 10, 1) == Approx(0.5));          // half there, half back
+    CHECK(greatest_between(infinity, 0, 1, 1) == infinity);
+    CHECK(greatest_between(0, 0, std::nan(""), infinity) == infinity);
+    Random random(3);
+    for (int i = 0; i < 10000; ++i) { // against the parabola itself
+        const double a = between(random, -1, 1), b = between(random, -1, 1), s = between(random, -1, 1);
+        double most = -infinity;
+        for (int n = 0; n <= 200; ++n) {
+            const double w = n / 200.0;
+            most = std::max(most, (1 - w) * a + w * b + 4 * w * (1 - w) * std::max(s, 0.0));
+        }
+        CHECK(greatest_between(a, b, s, infinity) >= most);
+        CHECK(greatest_between(a, b, s, infinity) <= most + 1e-4);
+    }
+}

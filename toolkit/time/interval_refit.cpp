@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "toolkit/time/interval_refit.hpp"
+
+#include <cmath>
+#include <cstring>
+
+#include "toolkit/bounds/rounding.hpp"
+
+namespace cinch {
+namespace {
+
+bool same(const std::vector<AffineMap>& x, const std::vector<AffineMap>& y)
+{
+    return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof(AffineMap)) == 0;
+}
+
+double infinite_unless(double x) { return x < infinite ? x : infinite; }
+
+} // namespace
+
+double greatest_between(double first, double last, double bump, double path)
+{
+    if (std::isnan(bump))
+        bump = infinite;
+    if (std::isnan(path))
+        path = infinite;
+    const double most = std::max(first, last), least = std::min(first, last);
+    if (!(most < infinite) || std::isnan(least))
+        return infinite;
+    // Each value below passes at most 6 roundings of what |first| + |last| + bump are the size of: the last term is at
+    // most (last − first)/4, as last − first < 4 bump where it is taken.
+    double parabola = most;
+    if (!(bump <= 0) && !(most - least >= 4 * bump)) {
+        const double d = most - least;
+        parabola = (first + last) / 2 + bump + d * d / (16 * bump);
+        parabola = std::max(most, parabola + 0x1p-49 * (std::abs(first) + std::abs(last) + bump));
+        parabola = infinite_unless(parabola);
+    }
+    const double way = std::min((first + last + path) / 2, least + path),
+                 lipschitz = infinite_unless(way + 0x1p-49 * (std::abs(first) + std::abs(last) + path));
+    return succ(std::min(parabola, std::max(most, lipschitz)));
+}
+
+IntervalRefitter::IntervalRefitter(const Bvh& bvh, const DeformableSurface& surface, const RefitOptions& options)
+    : bvh_(bvh), kdop_(options.kdop), refit_(bvh, surface, options)
+{
+    const std::size_t count = bvh.bvs.size() * static_cast<std::size_t>(kdop_);
+    first_.resize(count);
+    last_.resize(count);
+    bend_.resize(count);
+}
+
+void IntervalRefitter::operator()(const MotionInterval& motion, std::span<double> supports)
+{
+    if (supports.size() != first_.size())
+        throw std::invalid_argument("supports has " + std::to_string(supports.size()) + " entries; the BVs need " +
+                                    std::to_string(first_.size()));
+    if (same(last_maps_, motion.first))
+        first_.swap(last_);
+    else
+        refit_(motion.first, first_);
+    last_maps_.clear();
+    refit_(motion.last, last_);
+    last_maps_ = motion.last;
+    refit_(motion.bend, bend_);
+    const auto axes = axes_of(kdop_);
+    const auto k = static_cast<std::size_t>(kdop_);
+    for (std::size_t i = 0; i < bvh_.bvs.size(); ++i) {
+        const RestBv bv = bvh_.rest(i);
+        auto limit = [&](double MotionInterval::Limits::*of) {
+            return greatest_mean(bv, [&](std::size_t j) { return motion.limits[bv.node[j]].*of; });
+        };
+        using L = MotionInterval::Limits;
+        // Evaluation of a vertex of n influences rounds by (n + 8)u of what `error`, at least 2⁻⁴² of it, stands for.
+        const double evaluation = 1 + bv.vertex_influences / 256.0;
+        const double remainder = limit(&L::remainder) + limit(&L::bend_error), bump = limit(&L::bump),
+                     path = limit(&L::path), error = limit(&L::error) * evaluation;
+        for (std::size_t d = 0; d < k; ++d) {
+            const auto& axis = axes[d / 2];
+            const double norm =
+                succ(std::sqrt(static_cast<double>(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2])));
+            const std::size_t at = i * k + d;
+            auto scaled = [&](double x) { return succ(norm * x); };
+            const double s = std::min(succ(bend_[at] + scaled(remainder)), scaled(bump));
+            supports[at] = greatest_between(succ(first_[at] + scaled(error)), succ(last_[at] + scaled(error)),
+                                            std::isnan(s) ? scaled(bump) : s, scaled(path));
+        }
+    }
+}
+
+} // namespace cinch

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "cinch/refit.hpp"
+#include "toolkit/time/motion_interval.hpp"
+
+namespace cinch {
+
+/// Bounds every BV of a surface for all times of an interval: two refits, at the end of the interval and of its bend
+/// (a third at its beginning, where that is not the end of the last one), and a pass over the influences.
+///
+/// With F_a, F_b the bounds at both ends and s ≥ −(D²/8) γ·v″(t) for every vertex v and all t, every γ·v(t) lies below
+/// the parabola (1 − τ)F_a + τF_b + 4τ(1 − τ)s, whose greatest value is the bound: max(F_a, F_b) where the chord is
+/// steep, else (F_a + F_b)/2 + s + (F_b − F_a)²/(16 s). s: the support of the bend over the BV plus a remainder, or
+/// the bump, whichever is less; and from the path's length (F_a + F_b + L)/2 and min(F_a, F_b) + L.
+class IntervalRefitter {
+public:
+    /// Surface and BVH must stay as they are, and alive. Throws std::invalid_argument for a k that is none.
+    IntervalRefitter(const Bvh& bvh, const DeformableSurface& surface, const RefitOptions& options);
+
+    /// supports[bv·k + d] as a Refitter's: at every real t of the interval, and of every vertex in exact arithmetic and
+    /// as evaluate_vertex computes it from maps that are as near to the exact ones as `first` and `last` are.
+    void operator()(const MotionInterval& motion, std::span<double> supports);
+
+    /// Those of the last interval's ends, in its own arithmetic: bounds at these times.
+    std::span<const double> at_first() const { return first_; }
+    std::span<const double> at_last() const { return last_; }
+    /// Supports of a BV.
+    std::size_t kdop() const { return static_cast<std::size_t>(kdop_); }
+
+private:
+    const Bvh& bvh_;
+    int kdop_;
+    Refitter refit_;
+    std::vector<AffineMap> last_maps_;
+    std::vector<double> first_, last_, bend_;
+};
+
+/// The greatest value of the parabola above, with what the path's length L says; rounded up. Infinite where an input is
+/// or is no number.
+double greatest_between(double first, double last, double bump, double path);
+
+/// At least max Σ w_j c_j over the BV's weight space, c_j ≥ 0 (Eq. 12, or the greatest c_j); `of(j)` gives that of
+/// the j-th of the BV's simulation nodes.
+template <class F> double greatest_mean(const RestBv& bv, F&& of)
+{
+    double most = 0, second = 0;
+    for (std::size_t j = 0; j < bv.node.size(); ++j) {
+        const double c = of(j);
+        second = std::max(second, std::min(c, most));
+        most = std::max(most, c);
+    }
+    if (!(most < HUGE_VAL) || second == most)
+        return most;
+    double sum = second; // D(λ) at the second-greatest
+    for (std::size_t j = 0; j < bv.node.size(); ++j) {
+        const double above = of(j) - second;
+        sum += bv.space.l[j] * above + (bv.space.h[j] - bv.space.l[j]) * std::max(above, 0.0);
+    }
+    // |terms| sum to at most 3 most, each passes n + 3 roundings.
+    const double rounding = (static_cast<double>(bv.node.size()) + 8) * 0x1p-51 * most;
+    return std::min(most, sum + rounding);
+}
+
+} // namespace cinch
