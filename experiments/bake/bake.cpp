@@ -88,13 +88,14 @@ std::vector<Body> load(const BakeOptions& options)
     return bodies;
 }
 
-// What a wrong formula would say: for tests of the exact side.
-TimedMotion sabotaged(TimedMotion motion, TimeSabotage how)
+// Ends when it is asked to; and says what a wrong formula would say, for tests of the exact side.
+TimedMotion watched(TimedMotion motion, TimeSabotage how)
 {
-    if (how == TimeSabotage::none)
-        return motion;
     motion.over = [right = std::move(motion.over), how](double a, double b) {
+        throw_if_interrupted();
         MotionInterval out = right(a, b);
+        if (how == TimeSabotage::none)
+            return out;
         for (std::size_t j = 0; j < out.limits.size(); ++j) {
             MotionInterval::Limits& limit = out.limits[j];
             if (how == TimeSabotage::no_remainder) {
@@ -178,7 +179,7 @@ int bake(const BakeOptions& options)
             std::vector<std::pair<std::string, std::vector<BakedInterval>>> baked;
             Progress progress("baking clips", body.clips.size());
             for (const Source& source : body.clips) {
-                const TimedMotion motion = sabotaged(source.motion, options.sabotage);
+                const TimedMotion motion = watched(source.motion, options.sabotage);
                 baked.emplace_back(motion.name, bake_clip(refit, motion, options, count));
                 const std::vector<BakedInterval>& intervals = baked.back().second;
                 for (const BakedInterval& interval : intervals)

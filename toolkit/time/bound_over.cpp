@@ -32,45 +32,54 @@ TimeCost bound_over(IntervalRefitter& refit, const TimedMotion& motion, double a
         open.push_back({cuts[i - 1], cuts[i], 0});
     open.push_back({b_s, b_s, 0}); // where a curve may jump to what no interval before it has
 
-    std::vector<double> instant(supports.size(), -std::numeric_limits<double>::infinity()), bound(supports.size()),
-        allowed(supports.size());
+    std::vector<double> instant(supports.size(), -std::numeric_limits<double>::infinity()), bound(supports.size());
     std::fill(supports.begin(), supports.end(), -std::numeric_limits<double>::infinity());
     auto take = [&](std::span<double> to, std::span<const double> from) {
         for (std::size_t i = 0; i < to.size(); ++i)
             to[i] = std::max(to[i], from[i]);
     };
+    // What a piece may exceed bounds at instants by: of these, the most along an axis.
+    auto room_of = [&](std::size_t bv, auto&& at) {
+        double half_extent = 0;
+        for (std::size_t d = bv * k; d < bv * k + k; d += 2)
+            half_extent = std::max(half_extent, (at(d) + at(d + 1)) / 2);
+        return tolerance * half_extent;
+    };
+    // Whether a bound stays that near to them; more instants can only make it nearer.
+    auto is_near = [&](std::span<const double> bounds, auto&& at) {
+        for (std::size_t bv = 0; bv < bounds.size() / k; ++bv) {
+            const double room = room_of(bv, at);
+            for (std::size_t d = bv * k; d < bv * k + k; ++d)
+                if (bounds[d] > at(d) + room && bounds[d] > supports[d])
+                    return false;
+        }
+        return true;
+    };
     while (!open.empty()) {
-        std::vector<std::vector<double>> bounds;
+        std::vector<std::pair<Piece, std::vector<double>>> doubtful; // until all instants are known
         for (const Piece& piece : open) {
             refit(motion.over(piece.first_s, piece.last_s), bound);
-            bounds.push_back(bound);
-            take(instant, refit.at_first());
-            take(instant, refit.at_last());
+            const auto first = refit.at_first(), last = refit.at_last();
+            take(instant, first);
+            take(instant, last);
             ++cost.intervals;
             cost.refits += 2;
+            if (is_near(bound, [&](std::size_t d) { return std::max(first[d], last[d]); }))
+                take(supports, bound);
+            else
+                doubtful.emplace_back(piece, bound);
         }
-        for (std::size_t i = 0; i < supports.size(); i += k) {
-            double half_extent = 0;
-            for (std::size_t d = i; d < i + k; d += 2)
-                half_extent = std::max(half_extent, (instant[d] + instant[d + 1]) / 2);
-            for (std::size_t d = i; d < i + k; ++d)
-                allowed[d] = instant[d] + tolerance * half_extent;
-        }
-        std::vector<Piece> next;
-        for (std::size_t p = 0; p < open.size(); ++p) {
-            const Piece& piece = open[p];
+        open.clear();
+        for (const auto& [piece, bounds] : doubtful) {
             const double middle = piece.first_s + (piece.last_s - piece.first_s) / 2;
-            bool loose = false;
-            for (std::size_t i = 0; i < supports.size() && !loose; ++i)
-                loose = bounds[p][i] > allowed[i] && bounds[p][i] > supports[i];
-            if (loose && piece.halvings < most_halvings && middle > piece.first_s && middle < piece.last_s) {
-                next.push_back({piece.first_s, middle, piece.halvings + 1});
-                next.push_back({middle, piece.last_s, piece.halvings + 1});
+            if (piece.halvings < most_halvings && middle > piece.first_s && middle < piece.last_s &&
+                !is_near(bounds, [&](std::size_t d) { return instant[d]; })) {
+                open.push_back({piece.first_s, middle, piece.halvings + 1});
+                open.push_back({middle, piece.last_s, piece.halvings + 1});
             } else {
-                take(supports, bounds[p]);
+                take(supports, bounds);
             }
         }
-        open = std::move(next);
     }
     return cost;
 }

@@ -224,11 +224,4 @@ TimedMotion character_motion(const Character& character, const Character::Animat
             [motion](double a, double b) { return motion->over(a, b); }};
 }
 
-std::function<std::vector<AffineMap>(double)> joint_maps(const Character& character,
-                                                         const Character::Animation& animation)
-{
-    const auto motion = std::make_shared<const CharacterMotion>(character, animation, std::vector<Reach>());
-    return [motion](double t) { return motion->at(t); };
-}
-
 } // namespace cinch

@@ -13,8 +13,4 @@ namespace cinch {
 TimedMotion character_motion(const Character& character, const Character::Animation& animation,
                              const DeformableSurface& surface);
 
-/// The function `at` of it.
-std::function<std::vector<AffineMap>(double)> joint_maps(const Character& character,
-                                                         const Character::Animation& animation);
-
 } // namespace cinch

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "toolkit/time/interval_refit.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -12,6 +13,15 @@ namespace {
 bool same(const std::vector<AffineMap>& x, const std::vector<AffineMap>& y)
 {
     return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof(AffineMap)) == 0;
+}
+
+bool is_zero(const AffineMap& map)
+{
+    for (const auto& row : map.m)
+        for (const double x : row)
+            if (x != 0)
+                return false;
+    return true;
 }
 
 double infinite_unless(double x) { return x < infinite ? x : infinite; }
@@ -62,7 +72,10 @@ void IntervalRefitter::operator()(const MotionInterval& motion, std::span<double
     last_maps_.clear();
     refit_(motion.last, last_);
     last_maps_ = motion.last;
-    refit_(motion.bend, bend_);
+    if (std::all_of(motion.bend.begin(), motion.bend.end(), is_zero))
+        std::fill(bend_.begin(), bend_.end(), 0.0); // places move along straight lines
+    else
+        refit_(motion.bend, bend_);
     const auto axes = axes_of(kdop_);
     const auto k = static_cast<std::size_t>(kdop_);
     for (std::size_t i = 0; i < bvh_.bvs.size(); ++i) {
