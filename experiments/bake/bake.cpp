@@ -13,7 +13,7 @@
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/number.hpp"
 #include "experiments/report/progress.hpp"
-#include "experiments/report/table.hpp"
+#include "experiments/shipped.hpp"
 #include "toolkit/surface/character.hpp"
 #include "toolkit/time/character_motion.hpp"
 
@@ -48,9 +48,11 @@ std::vector<Body> load(const BakeOptions& options)
     std::vector<Body> bodies;
     InputOptions what = options.input;
     if (!is_character(what.input)) {
-        what.first_frame = true;
-        if (what.frames == 0)
-            what.frames = 1'000'000;
+        if (is_scene(what.input)) { // all of its frames, of which a choice is the usual
+            what.first_frame = true;
+            if (what.frames == 0)
+                what.frames = 1'000'000;
+        }
         for (Input& input : load_inputs(what).bodies) {
             bodies.emplace_back();
             Body& body = bodies.back();

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """bake_test.py CINCH [SHARED]: the boxes of `cinch bake` against a reader and sampler of glTF of its own, written from
 the specification: dense samples of every clip must lie inside, and reach nearly as far."""
-import base64, json, math, os, struct, subprocess, sys, tempfile
+import ast, base64, json, math, os, re, struct, subprocess, sys, tempfile, zipfile
 
 program, shared = sys.argv[1], sys.argv[2] if len(sys.argv) > 2 else ""
 FORMATS = {5120: ("b", 127), 5121: ("B", 255), 5122: ("h", 32767), 5123: ("H", 65535), 5125: ("I", 0), 5126: ("f", 0)}
@@ -242,11 +242,36 @@ with tempfile.TemporaryDirectory() as folder:
     npz = os.path.join(folder, "wave.npz")
     assert subprocess.run([program, "bake", made, "--level", "-1", "--npz", npz, "--usd", npz + ".usda"],
                           capture_output=True).returncode == 0
-    import zipfile
+    def array(bytes_):
+        assert bytes_[:8] == b"\x93NUMPY\x01\x00"
+        length = struct.unpack_from("<H", bytes_, 8)[0]
+        head = ast.literal_eval(bytes_[10:10 + length].decode())
+        count = math.prod(head["shape"])
+        return head["shape"], struct.unpack_from("<%d%s" % (count, {"<f8": "d", "<u4": "I"}[head["descr"]]), bytes_,
+                                                 10 + length)
+    rows = [json.loads(x) for x in subprocess.run([program, "bake", made, "--level", "-1", "--json"],
+                                                  capture_output=True, text=True).stdout.splitlines()]
     with zipfile.ZipFile(npz) as archive:
-        assert archive.testzip() is None and set(archive.namelist()) >= {"level.npy", "wave/times.npy",
-                                                                         "wave/bounds.npy"}, archive.namelist()
-    assert open(npz + ".usda").read().startswith("#usda 1.0\n")
+        assert archive.testzip() is None
+        (bvs,), levels = array(archive.read("level.npy"))
+        _, times = array(archive.read("wave/times.npy"))
+        shape, bounds = array(archive.read("wave/bounds.npy"))
+    assert shape == (len(times) // 2, bvs, 2, 3) and len(rows) == shape[0] * bvs, shape
+    for n, row in enumerate(rows):
+        assert list(bounds[6 * n:6 * n + 6]) == row["min"] + row["max"], row
+        assert levels[row["bv"]] == row["level"] and times[n // bvs * 2] == row["t0"], row
+    text = open(npz + ".usda").read()
+    samples = re.findall(r"([-0-9.e+]+): \[\(([^)]*)\), \(([^)]*)\)\]", text)
+    assert text.startswith("#usda 1.0\n") and len(samples) == shape[0] + 1, text
+    for row in rows:
+        if row["bv"] == 0:  # both ends of an interval hold it, so every mixture of them does
+            ends = [s for s in samples if float(s[0]) in (row["t0"], row["t1"])]
+            assert len(ends) == 2, row
+            for _, low, high in ends:
+                assert all(float(x) < y for x, y in zip(low.split(","), row["min"])), row
+                assert all(float(x) > y for x, y in zip(high.split(","), row["max"])), row
+    shape_ = subprocess.run([program, "bake", "fish", "--whole"], capture_output=True, text=True, timeout=120)
+    assert shape_.returncode == 0 and "(" in shape_.stdout, shape_.stderr
 skins = os.path.join(shared, "meshes", "skin")
 if os.path.isdir(skins):
     for name in sorted(os.listdir(skins)):

@@ -217,6 +217,50 @@ TEST_CASE("bounds over time hold at all times, and whatever is dropped from them
         CHECK(dropped[kind] > test::share_of(120) / 4);
 }
 
+TEST_CASE("a support that a vertex passes at one moment is refuted there")
+{
+    Random random(5);
+    std::size_t refuted = 0, cases = 0;
+    for (std::size_t i = 0, count = test::share_of(60); i < count; ++i) {
+        const Subject subject = random_subject(random);
+        const TimedMotion motion = character_motion(subject.character, subject.character.rest, subject.surface);
+        std::optional<exact::ClipEnclosure> clip;
+        try {
+            clip.emplace(subject.character, subject.character.rest);
+        } catch (const InputError&) {
+            continue;
+        }
+        // The farthest place of the root along one direction among many moments, and a support barely below it.
+        Refitter truth(subject.bvh, subject.surface, {Method::vertices, 6, Rounding::plain});
+        const std::size_t bvs = subject.bvh.bvs.size(), d = i % 6;
+        std::vector<double> now(6 * bvs), supports(6 * bvs, HUGE_VAL);
+        double most = -HUGE_VAL, size = 0;
+        for (int n = 1; n < 500; ++n) {
+            truth(motion.at(motion.first_s() + (motion.last_s() - motion.first_s()) * n / 500), now);
+            most = std::max(most, now[d]);
+            size = std::max({size, std::abs(now[d]), std::abs(now[d ^ 1])});
+        }
+        supports[d] = most - 1e-9 * size;
+        const exact::TimeChecker check(subject.surface, subject.bvh, *clip, 6, [] {});
+        const exact::TimeVerdict verdict = check(motion.first_s(), motion.last_s(), supports);
+        ++cases;
+        refuted += verdict.violated == 1 && verdict.worst && verdict.worst->at_least > supports[d];
+        CAPTURE(i, verdict.undecided, most, size);
+        CHECK(verdict.violated == 1);
+        // And where it says so it is so.
+        if (verdict.worst) {
+            double reach = -HUGE_VAL; // then, or just before, where a curve jumps then
+            for (const double t : {verdict.worst->time_s, std::nextafter(verdict.worst->time_s, -HUGE_VAL)}) {
+                const Vec3 place = evaluate_vertex(subject.surface.mesh.vertices[verdict.worst->vertex],
+                                                   subject.surface.weights.of(verdict.worst->vertex), motion.at(t));
+                reach = std::max(reach, (d % 2 ? -1 : 1) * place[static_cast<int>(d / 2)]);
+            }
+            CHECK(reach >= verdict.worst->at_least - 1e-6 * size);
+        }
+    }
+    CHECK(refuted == cases);
+}
+
 TEST_CASE("joint matrices are as near to the exact ones as their errors say, at all times")
 {
     Random random(11);
