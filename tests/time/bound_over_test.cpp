@@ -261,6 +261,53 @@ TEST_CASE("a support that a vertex passes at one moment is refuted there")
     CHECK(refuted == cases);
 }
 
+TEST_CASE("limits of an interval hold divided differences of the places, and not by far more")
+{
+    Random random(13);
+    double nearest[3] = {};
+    for (std::size_t i = 0, cases = test::share_of(200); i < cases; ++i) {
+        const Subject subject = random_subject(random);
+        const TimedMotion motion = character_motion(subject.character, subject.character.rest, subject.surface);
+        for (std::size_t k = 1; k < motion.keys.size(); ++k) {
+            const double a = motion.keys[k - 1], b = motion.keys[k], length = b - a, step = length / 32;
+            const MotionInterval interval = motion.over(a, b);
+            std::vector<std::vector<AffineMap>> maps;
+            for (int n = 1; n < 32; ++n) // inside, where jumps at keys do not count
+                maps.push_back(motion.at(a + n * step));
+            for (std::size_t v = 0; v < subject.surface.mesh.vertices.size(); ++v)
+                for (const std::uint32_t j : subject.surface.weights.of(v).node) {
+                    const Vec3& y = subject.surface.mesh.vertices[v];
+                    std::vector<Vec3> x;
+                    double size = 0;
+                    for (const auto& map : maps) {
+                        x.push_back(apply(map[j], y));
+                        size = std::max(size, x.back().norm());
+                    }
+                    // D ‖x′‖, (D²/8) ‖x″‖ and (D³/32) ‖x‴‖, each at some time between.
+                    const MotionInterval::Limits& limit = interval.limits[j];
+                    const double most[3] = {limit.path, limit.bump, limit.remainder}, part[3] = {1, 1.0 / 8, 1.0 / 32};
+                    double times = 1;
+                    for (std::size_t order = 0; order < 3; ++order) {
+                        times *= 32;
+                        for (std::size_t n = 0; n + 1 < x.size(); ++n)
+                            x[n] = x[n + 1] - x[n];
+                        x.pop_back();
+                        double found = 0;
+                        for (const Vec3& difference : x)
+                            found = std::max(found, difference.norm() * times * part[order]);
+                        const double rounding = 1e-13 * size * times;
+                        CAPTURE(i, k, j, order);
+                        CHECK(found <= most[order] + rounding);
+                        if (found > 1e3 * rounding)
+                            nearest[order] = std::max(nearest[order], found / most[order]);
+                    }
+                }
+        }
+    }
+    for (const double share : nearest)
+        CHECK(share > 0.9);
+}
+
 TEST_CASE("joint matrices are as near to the exact ones as their errors say, at all times")
 {
     Random random(11);
