@@ -269,13 +269,30 @@ Rows sum(const Rows& x, const Rows& y)
     return out;
 }
 
+Enclosure enclosure_of(const Interval& x) // an overflow leaves no interval
+{
+    return x.inf() <= x.sup() ? Enclosure{x.inf(), x.sup()} : Enclosure{-infinity, infinity};
+}
+
 MapEnclosure enclosure_of(const Rows& m)
 {
     MapEnclosure out;
     for (std::size_t r = 0; r < 3; ++r)
-        for (std::size_t c = 0; c < 4; ++c) // an overflow leaves no interval
-            out.m[r][c] = m[r][c].inf() <= m[r][c].sup() ? Enclosure{m[r][c].inf(), m[r][c].sup()}
-                                                         : Enclosure{-infinity, infinity};
+        for (std::size_t c = 0; c < 4; ++c)
+            out.m[r][c] = enclosure_of(m[r][c]);
+    return out;
+}
+
+// Four weights of a curve as a curve of their own; what is past its last one is 0.
+Curve four_of(const WeightCurve& curve, std::size_t first)
+{
+    Curve out{0, Curve::Target::translation, curve.interpolation, curve.time_s, {}};
+    for (std::size_t i = first; i < curve.value.size(); i += curve.count)
+        for (std::size_t n = 0; n < 4; ++n) {
+            if (n == 0)
+                out.value.emplace_back();
+            out.value.back()[n] = first + n < curve.count ? curve.value[i + n] : 0;
+        }
     return out;
 }
 
@@ -288,10 +305,12 @@ struct ClipEnclosure::Parts {
     std::vector<std::vector<Arc>> arcs; // between the keys of each curve, where they are that
     std::vector<double> keys;
     std::vector<WithSlope<Rows>> still; // bones as the file has them
+    std::vector<double> weights;        // of morph targets, where no curve moves them
+    std::vector<WeightCurve> weight_curves;
 };
 
 ClipEnclosure::ClipEnclosure(const Character& character, const Character::Animation& animation)
-    : parts_(new Parts{character.bones, character.joints, animation.curves, {}, {}, {}})
+    : parts_(new Parts{character.bones, character.joints, animation.curves, {}, {}, {}, character.target_weights, animation.morphs})
 {
     const DirectedRounding rounding;
     for (const Curve& curve : parts_->curves) {
@@ -306,12 +325,33 @@ ClipEnclosure::ClipEnclosure(const Character& character, const Character::Animat
     std::set<double> keys;
     for (const Curve& curve : animation.curves)
         keys.insert(curve.time_s.begin(), curve.time_s.end());
+    for (const WeightCurve& curve : animation.morphs)
+        keys.insert(curve.time_s.begin(), curve.time_s.end());
     parts_->keys.assign(keys.begin(), keys.end());
 }
 
 ClipEnclosure::~ClipEnclosure() = default;
 
 const std::vector<double>& ClipEnclosure::keys() const { return parts_->keys; }
+
+void ClipEnclosure::weights_at(double a_s, double b_s, double piece_a_s, double piece_b_s,
+                               std::vector<Enclosure>& weights, std::vector<Enclosure>& slopes) const
+{
+    const DirectedRounding rounding;
+    weights.clear();
+    for (const double weight : parts_->weights)
+        weights.push_back({weight, weight});
+    slopes.assign(weights.size(), Enclosure{});
+    for (const WeightCurve& curve : parts_->weight_curves)
+        for (std::size_t first = 0; first < curve.count; first += 4) {
+            const WithSlope<Quad> four =
+                evaluate(four_of(curve, first), {}, Interval(a_s, b_s), piece_a_s + (piece_b_s - piece_a_s) / 2);
+            for (std::size_t n = 0; n < 4 && first + n < curve.count; ++n) {
+                weights[curve.first_target + first + n] = enclosure_of(four.value[n]);
+                slopes[curve.first_target + first + n] = enclosure_of(four.slope[n]);
+            }
+        }
+}
 
 void ClipEnclosure::at(double a_s, double b_s, double piece_a_s, double piece_b_s, std::vector<MapEnclosure>& maps,
                        std::vector<MapEnclosure>& slopes) const

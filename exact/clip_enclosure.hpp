@@ -32,7 +32,11 @@ public:
     void at(double a_s, double b_s, double piece_a_s, double piece_b_s, std::vector<MapEnclosure>& maps,
             std::vector<MapEnclosure>& slopes) const;
 
-    /// Times of keys that move joints, ascending, each once.
+    /// The same of the weights of morph targets, as many as the character has.
+    void weights_at(double a_s, double b_s, double piece_a_s, double piece_b_s, std::vector<Enclosure>& weights,
+                    std::vector<Enclosure>& slopes) const;
+
+    /// Times of keys that move joints or weights, ascending, each once.
     const std::vector<double>& keys() const;
 
 private:

@@ -21,20 +21,29 @@ using Place = std::array<Interval, 3>;
 
 Interval interval_of(const Enclosure& x) { return {x.low, x.high}; }
 
-// Σ w_j (A_j y + t_j), each entry enclosed.
-Place place_of(const Weights::Row& row, const Vec3& y, const std::vector<MapEnclosure>& maps)
+// Adds Σ w_j (A_j y + shift · t_j), each entry enclosed.
+void add_place(const Weights::Row& row, const Place& y, const std::vector<MapEnclosure>& maps, bool shift, Place& out)
 {
-    Place out{Interval(0), Interval(0), Interval(0)};
     for (std::size_t i = 0; i < row.node.size(); ++i) {
         const MapEnclosure& map = maps[row.node[i]];
-        for (int r = 0; r < 3; ++r) {
-            Interval x = interval_of(map.m[r][3]);
-            for (int c = 0; c < 3; ++c)
-                x += interval_of(map.m[r][c]) * Interval(y[c]);
-            out[static_cast<std::size_t>(r)] += Interval(row.weight[i]) * x;
+        for (std::size_t r = 0; r < 3; ++r) {
+            Interval x = shift ? interval_of(map.m[r][3]) : Interval(0);
+            for (std::size_t c = 0; c < 3; ++c)
+                x += interval_of(map.m[r][c]) * y[c];
+            out[r] += Interval(row.weight[i]) * x;
         }
     }
-    return out;
+}
+
+const Place origin{Interval(0), Interval(0), Interval(0)};
+
+// Adds Σ a_i d_i.
+void add_displacement(const std::vector<std::pair<std::uint32_t, Vec3>>& by, const std::vector<Enclosure>& weights,
+                      Place& out)
+{
+    for (const auto& [target, d] : by)
+        for (std::size_t r = 0; r < 3; ++r)
+            out[r] += interval_of(weights[target]) * Interval(d[static_cast<int>(r)]);
 }
 
 Interval along(const Axis& axis, bool against, const Place& x)
@@ -46,7 +55,12 @@ Interval along(const Axis& axis, bool against, const Place& x)
     return sum;
 }
 
-using Maps = std::shared_ptr<const std::vector<MapEnclosure>>;
+// All that places are made from, at an instant.
+struct Pose {
+    std::vector<MapEnclosure> maps;
+    std::vector<Enclosure> weights;
+};
+using Maps = std::shared_ptr<const Pose>;
 
 struct Piece {
     double a, b, piece_a, piece_b;
@@ -67,10 +81,15 @@ void TimeVerdict::add(const TimeVerdict& other)
         worst = other.worst;
 }
 
-TimeChecker::TimeChecker(const DeformableSurface& surface, const Bvh& bvh, const ClipEnclosure& clip, int kdop,
-                         std::function<void()> poll)
+TimeChecker::TimeChecker(const DeformableSurface& surface, const Bvh& bvh, const ClipEnclosure& clip,
+                         std::span<const MorphTarget> targets, int kdop, std::function<void()> poll)
     : surface_(surface), bvh_(bvh), clip_(clip), kdop_(kdop), poll_(std::move(poll))
 {
+    if (!targets.empty())
+        displaced_.resize(surface.mesh.vertices.size());
+    for (std::uint32_t i = 0; i < targets.size(); ++i)
+        for (std::size_t n = 0; n < targets[i].vertex.size(); ++n)
+            displaced_[targets[i].vertex[n]].push_back({i, targets[i].displacement[n]});
     std::vector<std::vector<std::uint32_t>> containing(surface.mesh.vertices.size());
     for (std::uint32_t i = 0; i < bvh.bvs.size(); ++i) {
         const Bv& bv = bvh.bvs[i];
@@ -117,11 +136,16 @@ TimeVerdict TimeChecker::operator()(double a_s, double b_s, std::span<const doub
     for (std::size_t i = cuts.size() - 1; i-- > 0;)
         pieces.push_back({cuts[i], cuts[i + 1], cuts[i], cuts[i + 1], 0, nullptr, nullptr, all});
     pieces.push_back({b_s, b_s, b_s, b_s, 0, nullptr, nullptr, all}); // to which a curve may jump
-    std::vector<MapEnclosure> slopes, ignored;
+    std::vector<MapEnclosure> maps, slopes;
+    std::vector<Enclosure> weights, weight_slopes;
+    auto enclose = [&](double a, double b, const Piece& piece) {
+        clip_.at(a, b, piece.piece_a, piece.piece_b, maps, slopes);
+        if (!displaced_.empty())
+            clip_.weights_at(a, b, piece.piece_a, piece.piece_b, weights, weight_slopes);
+    };
     auto maps_at = [&](double t, const Piece& piece) {
-        const auto maps = std::make_shared<std::vector<MapEnclosure>>();
-        clip_.at(t, t, piece.piece_a, piece.piece_b, *maps, ignored);
-        return Maps(maps);
+        enclose(t, t, piece);
+        return std::make_shared<const Pose>(Pose{maps, weights});
     };
     while (!pieces.empty()) {
         poll_();
@@ -134,7 +158,7 @@ TimeVerdict TimeChecker::operator()(double a_s, double b_s, std::span<const doub
         ++out.pieces;
         const double middle = piece.a + (piece.b - piece.a) / 2;
         const Maps at_middle = maps_at(middle, piece);
-        clip_.at(piece.a, piece.b, piece.piece_a, piece.piece_b, ignored, slopes);
+        enclose(piece.a, piece.b, piece);
         std::vector<char> open(piece.open.size());
         tbb::parallel_for(tbb::blocked_range<std::size_t>(0, open.size(), 256), [&](const auto& range) {
             const DirectedRounding rounding;
@@ -142,11 +166,27 @@ TimeVerdict TimeChecker::operator()(double a_s, double b_s, std::span<const doub
             for (std::size_t n = range.begin(); n < range.end(); ++n) {
                 const std::uint32_t i = piece.open[n];
                 const std::uint32_t v = vertices_[i];
-                const Vec3& y = surface_.mesh.vertices[v];
-                auto place = [&](const std::vector<MapEnclosure>& maps) {
-                    return place_of(surface_.weights.of(v), y, maps);
+                const Vec3& rest = surface_.mesh.vertices[v];
+                const Place still{Interval(rest[0]), Interval(rest[1]), Interval(rest[2])};
+                const Weights::Row row = surface_.weights.of(v);
+                auto place = [&](const Pose& pose) {
+                    Place y = still, x = origin;
+                    if (!displaced_.empty())
+                        add_displacement(displaced_[v], pose.weights, y);
+                    add_place(row, y, pose.maps, true, x);
+                    return x;
                 };
-                const Place here = place(*at_middle), slope = place(slopes);
+                const Place here = place(*at_middle);
+                Place slope = origin; // T′(y + e) + A e′
+                if (displaced_.empty()) {
+                    add_place(row, still, slopes, true, slope);
+                } else {
+                    Place y = still, rate = origin;
+                    add_displacement(displaced_[v], weights, y);
+                    add_displacement(displaced_[v], weight_slopes, rate);
+                    add_place(row, y, slopes, true, slope);
+                    add_place(row, rate, maps, false, slope);
+                }
                 std::optional<Place> first, last; // at the ends
                 Place swept;
                 for (std::size_t r = 0; r < 3; ++r)

@@ -30,16 +30,16 @@ struct TimeVerdict {
     void add(const TimeVerdict& other);
 };
 
-/// Branch and bound over time on the transforms themselves: whether every vertex of every BV, w·T(t)y in real
-/// arithmetic, stays below supports[bv·k + d] at all real t of [a, b]. On a piece of time about m a vertex is enclosed
+/// Branch and bound over time on the transforms themselves: whether every vertex of every BV, w·T(t)(y + Σ a_i(t) d_i)
+/// in real arithmetic, stays below supports[bv·k + d] at all real t of [a, b]. On a piece of time about m a vertex is enclosed
 /// by x(m) + x′(piece)(t − m), both from interval arithmetic, and where the slope has one sign by its ends; pieces that
 /// do not decide are halved, for the vertices that they leave open, 48 times at most. In parallel over vertices. `poll`
 /// is called now and then and may throw.
 class TimeChecker {
 public:
-    /// Surface, BVH and clip must stay as they are, and alive.
-    TimeChecker(const DeformableSurface& surface, const Bvh& bvh, const ClipEnclosure& clip, int kdop,
-                std::function<void()> poll);
+    /// Surface, BVH and clip must stay as they are, and alive. `targets`: those whose weights the clip has.
+    TimeChecker(const DeformableSurface& surface, const Bvh& bvh, const ClipEnclosure& clip,
+                std::span<const MorphTarget> targets, int kdop, std::function<void()> poll);
 
     TimeVerdict operator()(double a_s, double b_s, std::span<const double> supports) const;
 
@@ -51,6 +51,7 @@ private:
     std::function<void()> poll_;
     std::vector<std::uint32_t> vertices_; ///< of any triangle
     std::vector<std::uint32_t> row_, bv_; ///< the BVs that contain each of them
+    std::vector<std::vector<std::pair<std::uint32_t, Vec3>>> displaced_; ///< by targets, every vertex; empty: by none
 };
 
 } // namespace cinch::exact

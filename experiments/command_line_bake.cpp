@@ -21,7 +21,7 @@ void add_bake(CLI::App& app, Run& run)
     option("--kdop", o.bounds.kdop, "directions of the bounds: " + kdop_names() + " [6]")
         ->check(CLI::IsMember(std::vector(kdops.begin(), kdops.end())))
         ->option_text("K");
-    option("--leaf", o.leaf, "most triangles per leaf [16]")->check(CLI::Range(1, 1000000))->option_text("N");
+    option("--leaf", o.leaf, "most triangles per leaf [4]")->check(CLI::Range(1, 1000000))->option_text("N");
     option("--level", o.level, "write the BVs down to this level of the tree; 0: the character's alone; -1: all [0]")
         ->check(CLI::Range(-1, std::numeric_limits<int>::max()))
         ->option_text("L");
@@ -48,10 +48,11 @@ void add_bake(CLI::App& app, Run& run)
     command.add_flag("--csv", o.output.csv, "the same as comma-separated values")->excludes(json);
     option("--sabotage", o.sabotage,
            "for tests: damage the bounds, to see that it is found: no-remainder (chords alone), half-bump, first-half "
-           "(the first pose of every interval)")
+           "(the first pose of every interval), still-morphs (weights of morph targets of the clip's beginning)")
         ->transform(one_of<TimeSabotage>({{"no-remainder", TimeSabotage::no_remainder},
                                           {"half-bump", TimeSabotage::half_bump},
-                                          {"first-half", TimeSabotage::first_half}}))
+                                          {"first-half", TimeSabotage::first_half},
+                                          {"still-morphs", TimeSabotage::still_morphs}}))
         ->option_text("KIND");
     command.footer(R"(A bound holds at every real time of its interval, keys or not: each vertex stays
 below the parabola through the bounds at both ends that its acceleration allows.

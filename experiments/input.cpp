@@ -89,11 +89,10 @@ void script(Input& input, const InputOptions& options, std::size_t default_nodes
                                            counted(alone, "vertex lies", "vertices lie")));
 }
 
-// Normalises the weights of a file.
-void take_weights(Input& input, const Influences& influences)
+// What normalising the weights of a file changed.
+void report_weights(Input& input, const Influences& influences)
 {
-    WeightReport& weights = input.weights_read;
-    input.surface.weights = to_dyadic(influences, &weights);
+    const WeightReport& weights = input.weights_read;
     if (weights.normalised)
         input.report.push_back(fmt::format(
             "{} of {} had weights that do not sum to 1 (sums {:.7g} to {:.7g}); normalised, which changed weights by "
@@ -118,13 +117,42 @@ const Named& choose_clip(const std::vector<Named>& clips, const std::string& wan
     throw InputError::in_file(file, fmt::format("has no clip '{}'; it has {}", wanted, known.empty() ? "none" : known));
 }
 
-void load_character(Input& input, const InputOptions& options)
+// Notes the file's surface and what is said of it.
+void take_surface(Input& input, const Character& character)
+{
+    input.report.insert(input.report.end(), character.notes.begin(), character.notes.end());
+    input.surface = surface_of(character, &input.weights_read);
+    if (input.surface.mesh.triangles.empty())
+        throw InputError::in_file(input.name, "has no triangles; there is nothing to bound");
+    report_weights(input, character.influences);
+}
+
+Character open_character(Input& input, const InputOptions& options, Morphs morphs)
 {
     input.simulation_nodes_fixed = true;
     refuse_options(options, false, true, true);
     if (!options.weights.empty() || !options.transforms.empty())
         throw InputError("--weights and --transforms need a mesh (OBJ, OFF, PLY, STL)");
-    Character character = read_gltf(options.input, Coverage::partial);
+    return read_gltf(options.input, Coverage::partial, morphs);
+}
+
+// The first lines of the load report; `motion`: the rest of the second one.
+void head_report(Input& input, const std::string& motion)
+{
+    const auto& weights = input.surface.weights;
+    const std::string influences =
+        fmt::format("{:.1f}", static_cast<double>(weights.node.size()) / static_cast<double>(weights.vertex_count()));
+    input.report.insert(
+        input.report.begin(),
+        {fmt::format("{}: {}, {}", input.name, counted(input.surface.mesh.vertices.size(), "vertex", "vertices"),
+                     counted(input.surface.mesh.triangles.size(), "triangle", "triangles")),
+         fmt::format("{}, {} influences per vertex; {}",
+                     counted(weights.node_count, "simulation node", "simulation nodes"), influences, motion)});
+}
+
+void load_character(Input& input, const InputOptions& options)
+{
+    const Character character = open_character(input, options, Morphs::missing);
     const bool rest = character.animations.empty() && options.clip.empty();
     const Character::Animation& animation =
         rest ? character.rest : choose_clip(character.animations, options.clip, options.input);
@@ -145,12 +173,10 @@ void load_character(Input& input, const InputOptions& options)
     if (character.animations.size() > 1 && options.clip.empty())
         input.report.push_back(
             fmt::format("{} clips; the first is used, --clip chooses another", character.animations.size()));
-    input.report.insert(input.report.end(), character.notes.begin(), character.notes.end());
+    take_surface(input, character);
     input.report.insert(input.report.end(), animation.notes.begin(), animation.notes.end());
     if (!input.missing.empty())
         input.report.push_back(fmt::format("partial, without {}", fmt::join(input.missing, "; ")));
-    take_weights(input, character.influences);
-    input.surface.mesh = std::move(character.mesh);
 }
 
 void load_skin_text(Input& input, const InputOptions& options)
@@ -162,15 +188,8 @@ void load_skin_text(Input& input, const InputOptions& options)
     const Influences influences = read_weights_text(options.weights, input.surface.mesh.vertices.size());
     const std::vector<Clip> clips = read_clips_text(options.transforms, influences.node_count);
     input.clip = evenly_spread(choose_clip(clips, options.clip, options.transforms), options.frames);
-    take_weights(input, influences);
-}
-
-bool is_character_file(const std::filesystem::path& path)
-{
-    std::string extension = path.extension().string();
-    for (char& c : extension)
-        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return extension == ".glb" || extension == ".gltf";
+    input.surface.weights = to_dyadic(influences, &input.weights_read);
+    report_weights(input, influences);
 }
 
 Inputs scene_of(const InputOptions& options)
@@ -266,22 +285,33 @@ Input load_input(const InputOptions& options)
     } else {
         throw InputError::in_file(options.input,
                                   std::filesystem::exists(options.input)
-                                      ? "unknown format; known are " + mesh_extensions(", .glb, .gltf")
+                                      ? "unknown format; known are " + mesh_extensions(", .glb, .gltf, .vrm")
                                       : fmt::format("no such file, and no shape ({}) or scene ({}) of that name",
                                                     fmt::join(shape_names(), ", "), fmt::join(shipped_scenes(), ", ")));
     }
     if (input.surface.mesh.triangles.empty())
-        throw InputError::in_file(options.input, "has no skinned triangles; there is nothing to bound");
-    const auto& weights = input.surface.weights;
-    const std::string influences =
-        fmt::format("{:.1f}", static_cast<double>(weights.node.size()) / static_cast<double>(weights.vertex_count()));
-    input.report.insert(
-        input.report.begin(),
-        {fmt::format("{}: {}, {}", input.name, counted(input.surface.mesh.vertices.size(), "vertex", "vertices"),
-                     counted(input.surface.mesh.triangles.size(), "triangle", "triangles")),
-         fmt::format("{}, {} influences per vertex; motion '{}', {}",
-                     counted(weights.node_count, "simulation node", "simulation nodes"), influences, input.clip.name,
-                     counted(input.clip.frame_count(), "frame", "frames"))});
+        throw InputError::in_file(options.input, "has no triangles; there is nothing to bound");
+    head_report(input, fmt::format("motion '{}', {}", input.clip.name,
+                                   counted(input.clip.frame_count(), "frame", "frames")));
+    return input;
+}
+
+Input load_character_surface(const InputOptions& options, Character& character)
+{
+    Input input;
+    input.name = options.input;
+    guard_surface(options.input);
+    character = open_character(input, options, Morphs::read);
+    input.missing = character.missing;
+    if (!input.missing.empty() && !options.partial)
+        throw InputError::in_file(
+            options.input,
+            fmt::format("has {}; --partial bounds the rest, and every result says so", not_modelled(input.missing)));
+    take_surface(input, character);
+    std::string motion = counted(character.animations.size(), "clip", "clips");
+    if (!character.targets.empty())
+        motion = counted(character.targets.size(), "morph target", "morph targets") + ", " + motion;
+    head_report(input, motion);
     return input;
 }
 

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "cinch/io.hpp"
 #include "cinch/surface.hpp"
 #include "toolkit/surface/skin.hpp"
 
@@ -55,7 +56,10 @@ struct Input {
 /// included.
 Input load_input(const InputOptions& options);
 
-/// The same with every body of a scene as an input of its own.
+/// A character with its morph targets read, and its surface without frames, for bounds over time.
+Input load_character_surface(const InputOptions& options, Character& character);
+
+/// The same as load_input with every body of a scene as an input of its own.
 struct Inputs {
     std::string name;
     std::vector<std::string> report;

@@ -36,18 +36,12 @@ struct Body {
     std::vector<Source> clips;
 };
 
-bool is_character(const std::string& name)
-{
-    const std::filesystem::path extension = std::filesystem::path(name).extension();
-    return extension == ".glb" || extension == ".gltf";
-}
-
 // All clips of a character that can be used, or the one that was asked for.
 std::vector<Body> load(const BakeOptions& options)
 {
     std::vector<Body> bodies;
     InputOptions what = options.input;
-    if (!is_character(what.input)) {
+    if (!is_character_file(what.input)) {
         if (is_scene(what.input)) { // all of its frames, of which a choice is the usual
             what.first_frame = true;
             if (what.frames == 0)
@@ -61,20 +55,23 @@ std::vector<Body> load(const BakeOptions& options)
         }
         return bodies;
     }
-    what.frames = 1;
     bodies.emplace_back();
     Body& body = bodies.back();
-    body.character = read_gltf(what.input, Coverage::partial);
-    Character& character = *body.character;
-    if (what.clip.empty() && !character.animations.empty())
-        what.clip = character.animations.front().name;
-    body.input = load_input(what); // the same surface, and what is said of it
+    Character& character = body.character.emplace();
+    body.input = load_character_surface(what, character);
     std::vector<const Character::Animation*> wanted;
     for (const Character::Animation& animation : character.animations)
-        if (options.input.clip.empty() || animation.name == body.input.clip.name)
+        if (what.clip.empty() || animation.name == what.clip)
             wanted.push_back(&animation);
-    if (character.animations.empty())
+    if (character.animations.empty() && what.clip.empty())
         wanted.push_back(&character.rest);
+    if (wanted.empty()) {
+        std::string known;
+        for (const Character::Animation& animation : character.animations)
+            known += (known.empty() ? "" : ", ") + animation.name;
+        throw InputError::in_file(what.input, fmt::format("has no clip '{}'; it has {}", what.clip,
+                                                          known.empty() ? "none" : known));
+    }
     for (const Character::Animation* animation : wanted) {
         if (!animation->missing.empty()) {
             if (!options.input.partial)
@@ -93,10 +90,21 @@ std::vector<Body> load(const BakeOptions& options)
 // Ends when it is asked to; and says what a wrong formula would say, for tests of the exact side.
 TimedMotion watched(TimedMotion motion, TimeSabotage how)
 {
-    motion.over = [right = std::move(motion.over), how](double a, double b) {
+    const double first_s = motion.first_s();
+    motion.over = [right = std::move(motion.over), how, first_s](double a, double b) {
         throw_if_interrupted();
         MotionInterval out = right(a, b);
         if (how == TimeSabotage::none)
+            return out;
+        MotionInterval::Morph& morph = out.morph;
+        if (how == TimeSabotage::still_morphs)
+            morph.first = right(first_s, first_s).morph.first;
+        if (how == TimeSabotage::still_morphs || how == TimeSabotage::first_half)
+            morph.last = morph.at[0] = morph.first;
+        if (how != TimeSabotage::half_bump)
+            for (std::size_t k = how == TimeSabotage::no_remainder ? 0 : 1; k < 3; ++k)
+                std::fill(morph.at[k].begin(), morph.at[k].end(), 0.0);
+        if (how == TimeSabotage::still_morphs)
             return out;
         for (std::size_t j = 0; j < out.limits.size(); ++j) {
             MotionInterval::Limits& limit = out.limits[j];
@@ -107,6 +115,10 @@ TimedMotion watched(TimedMotion motion, TimeSabotage how)
                 for (auto& row : out.bend[j].m)
                     for (double& x : row)
                         x /= 2;
+                for (std::vector<AffineMap>* maps : {&morph.slope, &morph.still})
+                    for (auto& row : (morph.empty() ? out.bend : *maps)[j].m)
+                        for (double& x : row)
+                            x /= morph.empty() ? 1 : 2;
                 limit.remainder /= 2;
                 limit.bump /= 2;
                 limit.path /= 2;
@@ -177,7 +189,9 @@ int bake(const BakeOptions& options)
             const Bvh bvh = build_bvh(body.input.surface, options.leaf);
             const std::size_t count = bvh.bvs.size() * static_cast<std::size_t>(options.bounds.kdop),
                               written = bvs_down_to(bvh, options.level);
-            IntervalRefitter refit(bvh, body.input.surface, options.bounds);
+            const std::span<const MorphTarget> targets =
+                body.character ? std::span<const MorphTarget>(body.character->targets) : std::span<const MorphTarget>();
+            IntervalRefitter refit(bvh, body.input.surface, options.bounds, targets);
             std::vector<std::pair<std::string, std::vector<BakedInterval>>> baked;
             Progress progress("baking clips", body.clips.size());
             for (const Source& source : body.clips) {
@@ -190,7 +204,7 @@ int bake(const BakeOptions& options)
                 std::string proof;
                 if (options.prove && source.animation) {
                     const exact::ClipEnclosure clip(*body.character, *source.animation);
-                    const exact::TimeChecker check(body.input.surface, bvh, clip, options.bounds.kdop,
+                    const exact::TimeChecker check(body.input.surface, bvh, clip, targets, options.bounds.kdop,
                                                    throw_if_interrupted);
                     exact::TimeVerdict own;
                     for (const BakedInterval& interval : intervals)
@@ -218,7 +232,7 @@ int bake(const BakeOptions& options)
                     fmt::print("{}", proof);
                 }
                 if (options.report) {
-                    const BakedFigures f = figures_of(body.input.surface, bvh, motion, options, intervals);
+                    const BakedFigures f = figures_of(body.input.surface, bvh, targets, refit, source.motion, options, intervals);
                     output.add({{"experiment", "bake"},
                                 {"input", body.input.name},
                                 {"clip", motion.name},

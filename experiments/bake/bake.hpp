@@ -8,12 +8,12 @@
 namespace cinch {
 
 /// Damage done to bounds over time on purpose, to see that the exact side finds it.
-enum class TimeSabotage { none, no_remainder, half_bump, first_half };
+enum class TimeSabotage { none, no_remainder, half_bump, first_half, still_morphs };
 
 struct BakeOptions {
     InputOptions input; ///< clip empty: all of them
     RefitOptions bounds;
-    std::size_t leaf = 16;   ///< most triangles of a leaf
+    std::size_t leaf = 4;    ///< most triangles of a leaf
     int level = 0;           ///< deepest of the BVs written; -1: all
     double interval_s = 0;   ///< 0: by itself
     bool whole = false;      ///< one interval per clip

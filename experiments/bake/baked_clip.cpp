@@ -36,6 +36,55 @@ template <class F> void each_time(const TimedMotion& motion, int samples, double
             use(s == samples ? cuts[i] : cuts[i - 1] + (cuts[i] - cuts[i - 1]) * s / samples);
 }
 
+// What the vertices of every BV reach at a time, but for rounding.
+class Truth {
+public:
+    Truth(const DeformableSurface& surface, const Bvh& bvh, std::span<const MorphTarget> targets, int kdop)
+        : surface_(surface), bvh_(bvh), targets_(targets), axes_(axes_of(kdop)),
+          place_(surface.mesh.vertices.size())
+    {
+    }
+
+    void operator()(const TimedMotion& motion, double t, std::vector<double>& supports)
+    {
+        std::vector<Vec3> rest = surface_.mesh.vertices;
+        if (motion.weights) {
+            const std::vector<double> weights = motion.weights(t);
+            for (std::size_t i = 0; i < targets_.size(); ++i)
+                for (std::size_t n = 0; n < targets_[i].vertex.size(); ++n)
+                    rest[targets_[i].vertex[n]] += weights[i] * targets_[i].displacement[n];
+        }
+        evaluate(rest, surface_.weights, motion.at(t), place_);
+        const std::size_t k = 2 * axes_.size();
+        std::fill(supports.begin(), supports.end(), -std::numeric_limits<double>::infinity());
+        for (std::size_t i = bvh_.bvs.size(); i-- > 0;) {
+            const Bv& bv = bvh_.bvs[i];
+            double* out = supports.data() + i * k;
+            if (!bv.is_leaf()) {
+                for (std::size_t d = 0; d < k; ++d)
+                    out[d] = std::max(supports[bv.first_child * k + d], supports[(bv.first_child + 1) * k + d]);
+                continue;
+            }
+            for (std::uint32_t t0 = bv.first_triangle; t0 < bv.first_triangle + bv.triangle_count; ++t0)
+                for (const std::uint32_t v : surface_.mesh.triangles[bvh_.triangle[t0]])
+                    for (std::size_t a = 0; a < axes_.size(); ++a) {
+                        const auto& g = axes_[a];
+                        const Vec3& x = place_[v];
+                        const double along = g[0] * x[0] + g[1] * x[1] + g[2] * x[2];
+                        out[2 * a] = std::max(out[2 * a], along);
+                        out[2 * a + 1] = std::max(out[2 * a + 1], -along);
+                    }
+        }
+    }
+
+private:
+    const DeformableSurface& surface_;
+    const Bvh& bvh_;
+    std::span<const MorphTarget> targets_;
+    std::span<const Axis> axes_;
+    std::vector<Vec3> place_;
+};
+
 } // namespace
 
 std::vector<BakedInterval> bake_clip(IntervalRefitter& refit, const TimedMotion& motion, const BakeOptions& options,
@@ -81,25 +130,25 @@ std::vector<BakedInterval> bake_clip(IntervalRefitter& refit, const TimedMotion&
     return out;
 }
 
-BakedFigures figures_of(const DeformableSurface& surface, const Bvh& bvh, const TimedMotion& motion,
-                        const BakeOptions& options, const std::vector<BakedInterval>& baked)
+BakedFigures figures_of(const DeformableSurface& surface, const Bvh& bvh, std::span<const MorphTarget> targets,
+                        IntervalRefitter& refit, const TimedMotion& motion, const BakeOptions& options,
+                        const std::vector<BakedInterval>& baked)
 {
     const int kdop = options.bounds.kdop;
     const std::size_t count = bvh.bvs.size() * static_cast<std::size_t>(kdop);
     const double least = -std::numeric_limits<double>::infinity();
     BakedFigures out;
     out.key_segments = motion.keys.size() - 1;
-    Refitter instants(bvh, surface, options.bounds), vertices(bvh, surface, {Method::vertices, kdop, Rounding::plain});
+    Truth vertices(surface, bvh, targets, kdop);
     std::vector<double> now(count), truth(count, least), all(count, least), at_keys(count, least), at_30(count, least);
     double sum = 0, number = 0;
     for (const BakedInterval& interval : baked) {
         throw_if_interrupted();
         std::vector<double> hull(count, least);
         each_time(motion, options.samples, interval.first_s, interval.last_s, [&](double t) {
-            const std::vector<AffineMap> maps = motion.at(t);
-            instants(maps, now);
+            refit.at(motion.at(t), motion.weights ? motion.weights(t) : std::vector<double>(), now);
             take(hull, now);
-            vertices(maps, now);
+            vertices(motion, t, now);
             take(truth, now);
             for (std::size_t d = 0; d < 6; ++d)
                 out.missed_by_us = std::max(out.missed_by_us, now[d] - interval.supports[d]);
@@ -115,7 +164,7 @@ BakedFigures figures_of(const DeformableSurface& surface, const Bvh& bvh, const 
     }
     out.time_mean = sum / number;
     auto sampled = [&](std::vector<double>& to, double t) {
-        vertices(motion.at(t), now);
+        vertices(motion, t, now);
         take(to, now);
     };
     for (const double key : motion.keys)

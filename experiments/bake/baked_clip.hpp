@@ -28,8 +28,9 @@ struct BakedFigures {
     double missed_by_us = 0;                  ///< the same of the root's bounds: 0
     std::size_t key_segments = 0, intervals = 0;
 };
-BakedFigures figures_of(const DeformableSurface& surface, const Bvh& bvh, const TimedMotion& motion,
-                        const BakeOptions& options, const std::vector<BakedInterval>& baked);
+BakedFigures figures_of(const DeformableSurface& surface, const Bvh& bvh, std::span<const MorphTarget> targets,
+                        IntervalRefitter& refit, const TimedMotion& motion, const BakeOptions& options,
+                        const std::vector<BakedInterval>& baked);
 
 /// Of a level and those above it.
 std::size_t bvs_down_to(const Bvh& bvh, int level);

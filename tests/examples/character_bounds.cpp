@@ -7,7 +7,7 @@
 int main(int argc, char** argv)
 try {
     const cinch::Character character = cinch::read_gltf(argc > 1 ? argv[1] : "character.glb");
-    const cinch::DeformableSurface surface{character.mesh, to_dyadic(character.influences)};
+    const cinch::DeformableSurface surface = surface_of(character);
     const cinch::Bvh bvh = build_bvh(surface, 16); // at most 16 triangles per leaf
     cinch::Refitter refit(bvh, surface, {});       // the default method, in float, 6 directions
 

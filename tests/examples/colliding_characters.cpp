@@ -10,7 +10,7 @@ int main(int argc, char** argv)
 try {
     const cinch::Character character = cinch::read_gltf(argc > 1 ? argv[1] : "character.glb");
     const double distance = argc > 2 ? std::atof(argv[2]) : 0.1;
-    const cinch::DeformableSurface surface{character.mesh, to_dyadic(character.influences)};
+    const cinch::DeformableSurface surface = surface_of(character);
 
     cinch::Collider collider;
     const cinch::BodyId left = collider.add(surface), right = collider.add(surface);

@@ -24,17 +24,26 @@ class File:
             open(os.path.join(os.path.dirname(name), b["uri"]), "rb").read() if "uri" in b else self.chunk
             for b in self.json["buffers"]]
 
+    def elements(self, holder, component, n, count, normalized=False):
+        view = self.json["bufferViews"][holder["bufferView"]]
+        letter, scale = FORMATS[component]
+        stride = view.get("byteStride") or n * struct.calcsize(letter)
+        start = view.get("byteOffset", 0) + holder.get("byteOffset", 0)
+        rows = [struct.unpack_from("<%d%s" % (n, letter), self.buffers[view["buffer"]], start + i * stride)
+                for i in range(count)]
+        return [tuple(max(x / scale, -1.0) for x in row) for row in rows] if normalized else rows
+
     def accessor(self, index):
         a = self.json["accessors"][index]
-        view = self.json["bufferViews"][a["bufferView"]]
-        letter, scale = FORMATS[a["componentType"]]
-        n = COMPONENTS[a["type"]]
-        stride = view.get("byteStride") or n * struct.calcsize(letter)
-        start = view.get("byteOffset", 0) + a.get("byteOffset", 0)
-        rows = [struct.unpack_from("<%d%s" % (n, letter), self.buffers[view["buffer"]], start + i * stride)
-                for i in range(a["count"])]
-        if a.get("normalized"):
-            rows = [tuple(max(x / scale, -1.0) for x in row) for row in rows]
+        n, normalized = COMPONENTS[a["type"]], a.get("normalized", False)
+        rows = (self.elements(a, a["componentType"], n, a["count"], normalized) if "bufferView" in a else
+                [(0.0,) * n] * a["count"])
+        if "sparse" in a:
+            sparse, rows = a["sparse"], list(rows)
+            places = self.elements(sparse["indices"], sparse["indices"]["componentType"], 1, sparse["count"])
+            values = self.elements(sparse["values"], a["componentType"], n, sparse["count"], normalized)
+            for (i,), value in zip(places, values):
+                rows[i] = value
         return rows
 
 
@@ -72,10 +81,10 @@ def value_at(times, values, mode, path, t):
     if t >= times[-1]:
         return key(len(times) - 1)
     i = max(n for n in range(len(times)) if times[n] <= t)
-    d = times[i + 1] - times[i]
-    s = (t - times[i]) / d
     if mode == "STEP":
         return key(i)
+    d = times[i + 1] - times[i]
+    s = (t - times[i]) / d
     if cubic:
         out, into = values[3 * i + 2], values[3 * i + 3]
         return [(2 * s**3 - 3 * s**2 + 1) * p + d * (s**3 - 2 * s**2 + s) * m + (3 * s**2 - 2 * s**3) * q
@@ -95,15 +104,23 @@ class Character:
                 self.parent[child] = i
         self.parts = []
         for i, node in enumerate(self.nodes):
-            if "mesh" not in node or "skin" not in node:
+            if "mesh" not in node:
                 continue
-            skin = j["skins"][node["skin"]]
+            identity = (1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1)
+            skin = j["skins"][node["skin"]] if "skin" in node else {"joints": [i]}  # a rigid part
             binds = (self.file.accessor(skin["inverseBindMatrices"]) if "inverseBindMatrices" in skin else
-                     [(1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1)] * len(skin["joints"]))
-            for primitive in j["meshes"][node["mesh"]]["primitives"]:
+                     [identity] * len(skin["joints"]))
+            mesh = j["meshes"][node["mesh"]]
+            for primitive in mesh["primitives"]:
                 at = primitive["attributes"]
-                self.parts.append((skin["joints"], binds, self.file.accessor(at["POSITION"]),
-                                   self.file.accessor(at["JOINTS_0"]), self.file.accessor(at["WEIGHTS_0"])))
+                positions = self.file.accessor(at["POSITION"])
+                one = [(0, 0, 0, 0)] * len(positions), [(1, 0, 0, 0)] * len(positions)
+                joints, weights = ((self.file.accessor(at["JOINTS_0"]), self.file.accessor(at["WEIGHTS_0"]))
+                                   if "skin" in node else one)
+                targets = [self.file.accessor(t["POSITION"]) if "POSITION" in t else [(0, 0, 0)] * len(positions)
+                           for t in primitive.get("targets", [])]
+                still = node.get("weights", mesh.get("weights", [0] * len(targets)))
+                self.parts.append((skin["joints"], binds, positions, joints, weights, i, targets, still))
 
     def clips(self):
         out = []
@@ -111,9 +128,18 @@ class Character:
             channels = []
             for channel in animation["channels"]:
                 sampler = animation["samplers"][channel["sampler"]]
-                channels.append((channel["target"]["node"], channel["target"]["path"],
-                                 [t[0] for t in self.file.accessor(sampler["input"])],
-                                 self.file.accessor(sampler["output"]), sampler.get("interpolation", "LINEAR")))
+                target = channel["target"]
+                if target["path"] == "pointer":
+                    node, path = target["extensions"]["KHR_animation_pointer"]["pointer"].split("/")[2:]
+                else:
+                    node, path = target["node"], target["path"]
+                times = [t[0] for t in self.file.accessor(sampler["input"])]
+                values, mode = self.file.accessor(sampler["output"]), sampler.get("interpolation", "LINEAR")
+                if path == "weights":  # a scalar for each target, key after key
+                    per = len(times) * (3 if mode == "CUBICSPLINE" else 1)
+                    count = len(values) // per
+                    values = [tuple(v[0] for v in values[k * count:(k + 1) * count]) for k in range(per)]
+                channels.append((int(node), path, times, values, mode))
             out.append((animation.get("name") or "anim%d" % i, channels))
         return out
 
@@ -123,7 +149,7 @@ class Character:
         for node, path, times, values, mode in channels:
             moved.setdefault(node, {})[path] = value_at(times, values, mode, path, t)
         for i, node in enumerate(self.nodes):
-            if "matrix" in node and i not in moved:
+            if "matrix" in node and not {"translation", "rotation", "scale"} & set(moved.get(i, {})):
                 m = node["matrix"]
                 local[i] = [[m[4 * c + r] for c in range(4)] for r in range(4)]
             else:
@@ -137,10 +163,12 @@ class Character:
                 world[i] = product(world_of(self.parent[i]), local[i]) if i in self.parent else local[i]
             return world[i]
 
-        for joints, binds, positions, indices, weights in self.parts:
+        for joints, binds, positions, indices, weights, node, targets, still in self.parts:
+            amount = moved.get(node, {}).get("weights", still)
             maps = [product(world_of(node), [[b[4 * c + r] for c in range(4)] for r in range(4)])
                     for node, b in zip(joints, binds)]
-            for p, index, weight in zip(positions, indices, weights):
+            for k, (p, index, weight) in enumerate(zip(positions, indices, weights)):
+                p = [x + sum(a * t[k][r] for a, t in zip(amount, targets)) for r, x in enumerate(p)]
                 total = sum(weight)
                 v = [0.0, 0.0, 0.0]
                 for i, w in zip(index, weight):
@@ -151,37 +179,63 @@ class Character:
                 yield v
 
 
+class Maker:
+    """The buffer of a document, accessor by accessor."""
+
+    def __init__(self):
+        self.data, self.views, self.accessors = b"", [], []
+
+    def view(self, rows, letter):
+        raw = b"".join(struct.pack("<%d%s" % (len(r), letter), *r) for r in rows)
+        self.views.append({"buffer": 0, "byteOffset": len(self.data), "byteLength": len(raw)})
+        self.data += raw + b"\0" * (-len(raw) % 4)
+        return len(self.views) - 1
+
+    def add(self, rows, kind, component=5126):
+        self.accessors.append({"bufferView": self.view(rows, FORMATS[component][0]), "componentType": component,
+                               "count": len(rows), "type": kind})
+        if kind == "VEC3" and component == 5126:
+            self.accessors[-1].update(min=[min(c) for c in zip(*rows)], max=[max(c) for c in zip(*rows)])
+        return len(self.accessors) - 1
+
+    def sparse(self, count, places, rows):
+        self.accessors.append({"componentType": 5126, "count": count, "type": "VEC3", "sparse": {
+            "count": len(places), "indices": {"bufferView": self.view([(i,) for i in places], "H"),
+                                              "componentType": 5123},
+            "values": {"bufferView": self.view(rows, "f")}}})
+        return len(self.accessors) - 1
+
+    def write(self, folder, name, document):
+        document = {"asset": {"version": "2.0"}, "scene": 0, **document,
+                    "buffers": [{"byteLength": len(self.data), "uri": "data:application/octet-stream;base64," +
+                                 base64.b64encode(self.data).decode()}],
+                    "bufferViews": self.views, "accessors": self.accessors}
+        name = os.path.join(folder, name)
+        json.dump(document, open(name, "w"))
+        return name
+
+
+turn = lambda a: (0, 0, math.sin(a / 2), math.cos(a / 2))
+
+
 def wave(folder):
     """Three bones in a chain, one of each interpolation, and a strip along them."""
-    data, views, accessors = b"", [], []
-
-    def add(rows, kind, component=5126):
-        nonlocal data
-        letter = FORMATS[component][0]
-        raw = b"".join(struct.pack("<%d%s" % (len(r), letter), *r) for r in rows)
-        views.append({"buffer": 0, "byteOffset": len(data), "byteLength": len(raw)})
-        accessors.append({"bufferView": len(views) - 1, "componentType": component, "count": len(rows), "type": kind})
-        if kind == "VEC3" and component == 5126:
-            accessors[-1].update(min=[min(c) for c in zip(*rows)], max=[max(c) for c in zip(*rows)])
-        data += raw + b"\0" * (-len(raw) % 4)
-        return len(accessors) - 1
-
-    turn = lambda a: (0, 0, math.sin(a / 2), math.cos(a / 2))
+    make = Maker()
     n = 30
-    positions = add([(x % 2 * 0.2, x * 0.1, 0.1 * math.sin(x)) for x in range(n)], "VEC3")
-    joints = add([(min(x // 10, 2), min(x // 10 + 1, 2), 0, 0) for x in range(n)], "VEC4", 5121)
-    weights = add([(1 - x % 10 / 20, x % 10 / 20, 0, 0) for x in range(n)], "VEC4")
-    indices = add([(i,) for x in range(n - 2) for i in (x, x + 1, x + 2)], "SCALAR", 5123)
-    binds = add([(1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -b, 0, 1) for b in range(3)], "MAT4")
-    times = add([(0.0,), (0.4,), (1.0,)], "SCALAR")
-    linear = add([turn(0), turn(2.5), turn(-1)], "VEC4")
+    positions = make.add([(x % 2 * 0.2, x * 0.1, 0.1 * math.sin(x)) for x in range(n)], "VEC3")
+    joints = make.add([(min(x // 10, 2), min(x // 10 + 1, 2), 0, 0) for x in range(n)], "VEC4", 5121)
+    weights = make.add([(1 - x % 10 / 20, x % 10 / 20, 0, 0) for x in range(n)], "VEC4")
+    indices = make.add([(i,) for x in range(n - 2) for i in (x, x + 1, x + 2)], "SCALAR", 5123)
+    binds = make.add([(1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -b, 0, 1) for b in range(3)], "MAT4")
+    times = make.add([(0.0,), (0.4,), (1.0,)], "SCALAR")
+    linear = make.add([turn(0), turn(2.5), turn(-1)], "VEC4")
     zero = (0, 0, 0, 0)
-    cubic = add([zero, turn(0), (0, 0, 2, 0), zero, turn(1.5), zero, (0, 1, 0, 0), turn(0.5), zero], "VEC4")
-    step = add([(0, 1, 0), (0.5, 1.2, 0), (0, 0.8, 0.3)], "VEC3")
+    cubic = make.add([zero, turn(0), (0, 0, 2, 0), zero, turn(1.5), zero, (0, 1, 0, 0), turn(0.5), zero], "VEC4")
+    step = make.add([(0, 1, 0), (0.5, 1.2, 0), (0, 0.8, 0.3)], "VEC3")
     samplers = [{"input": times, "output": linear}, {"input": times, "output": cubic, "interpolation": "CUBICSPLINE"},
                 {"input": times, "output": step, "interpolation": "STEP"}]
-    document = {
-        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 3]}],
+    return make.write(folder, "wave.gltf", {
+        "scenes": [{"nodes": [0, 3]}],
         "nodes": [{"children": [1]}, {"children": [2], "translation": [0, 1, 0]}, {"translation": [0, 1, 0]},
                   {"mesh": 0, "skin": 0}],
         "meshes": [{"primitives": [{"attributes": {"POSITION": positions, "JOINTS_0": joints, "WEIGHTS_0": weights},
@@ -190,13 +244,59 @@ def wave(folder):
         "animations": [{"name": "wave", "samplers": samplers, "channels": [
             {"sampler": 0, "target": {"node": 0, "path": "rotation"}},
             {"sampler": 1, "target": {"node": 1, "path": "rotation"}},
-            {"sampler": 2, "target": {"node": 2, "path": "translation"}}]}],
-        "buffers": [{"byteLength": len(data),
-                     "uri": "data:application/octet-stream;base64," + base64.b64encode(data).decode()}],
-        "bufferViews": views, "accessors": accessors}
-    name = os.path.join(folder, "wave.gltf")
-    json.dump(document, open(name, "w"))
-    return name
+            {"sampler": 2, "target": {"node": 2, "path": "translation"}}]}]})
+
+
+def face(folder, name="face.gltf"):
+    """A skinned sheet with three morph targets, one of them sparse, whose weights move in each way; the same mesh again
+    with weights of its own; a mesh without a skin, twice, one of them shrinking to nothing; and one that morphs."""
+    make = Maker()
+    n = 6
+    grid = [(x * 0.2, y * 0.2, 0.05 * math.sin(x * y)) for y in range(n) for x in range(n)]
+    triangles = [(i,) for y in range(n - 1) for x in range(n - 1)
+                 for i in (y * n + x, y * n + x + 1, y * n + n + x, y * n + x + 1, y * n + n + x + 1, y * n + n + x)]
+    positions, indices = make.add(grid, "VEC3"), make.add(triangles, "SCALAR", 5123)
+    joints = make.add([(0, 1, 0, 0)] * len(grid), "VEC4", 5121)
+    weights = make.add([(1 - x / 1.0, x / 1.0, 0, 0) for x, _, _ in grid], "VEC4")
+    binds = make.add([(1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -b, 0, 0, 1) for b in range(2)], "MAT4")
+    open_ = make.add([(0, -0.3 * y, 0.1) if y < 0.5 else (0, 0, 0) for _, y, _ in grid], "VEC3")
+    smile = make.sparse(len(grid), [0, 5, 7, 30], [(-0.1, 0.2, 0), (0.1, 0.2, 0), (0.3, -0.3, 0.2), (0, 0, 1)])
+    puff = make.add([(0, 0, 0.4 * math.exp(-4 * ((x - 0.5)**2 + (y - 0.5)**2))) for x, y, _ in grid], "VEC3")
+    targets = [{"POSITION": open_}, {"POSITION": smile}, {"POSITION": puff}]
+    times, later = make.add([(0.0,), (0.5,), (1.25,)], "SCALAR"), make.add([(0.2,), (0.9,)], "SCALAR")
+    linear = make.add([(w,) for w in (0, 0, 0, 1, -0.5, 0.2, 0.3, 1, 2)], "SCALAR")
+    cubic = make.add([(w,) for k in ((0, 0, 0), (0, 0.5, 0), (3, -2, 1), (-4, 0, 2), (1, 0, 0.7), (0, 0, 0)) for w in k],
+                     "SCALAR")
+    step = make.add([(w,) for w in (0.1, 0, 1, 0.9, 1, -1)], "SCALAR")
+    nod = make.add([turn(0), turn(1.2), turn(-0.7)], "VEC4")
+    shrink = make.add([(1, 1, 1), (2, 0.5, 1), (0, 0, 0)], "VEC3")
+    spin = make.add([(0, 0, 0, 1), (0.9, 0.1, 0, 0.2)], "VEC4")
+    samplers = [{"input": times, "output": linear}, {"input": later, "output": cubic, "interpolation": "CUBICSPLINE"},
+                {"input": later, "output": step, "interpolation": "STEP"}, {"input": times, "output": nod},
+                {"input": times, "output": shrink}, {"input": later, "output": spin}]
+    skinned = {"attributes": {"POSITION": positions, "JOINTS_0": joints, "WEIGHTS_0": weights}, "indices": indices}
+    plain = {"attributes": {"POSITION": positions}, "indices": indices}
+    pointer = lambda p: {"path": "pointer", "extensions": {"KHR_animation_pointer": {"pointer": p}}}
+    return make.write(folder, name, {
+        "extensionsUsed": ["KHR_animation_pointer"],
+        "scenes": [{"nodes": [0, 2, 3, 4, 7]}],
+        "nodes": [{"children": [1]}, {"translation": [1, 0, 0]}, {"mesh": 0, "skin": 0},
+                  {"mesh": 0, "skin": 0, "weights": [0, 0.25, 0.5]},
+                  {"children": [5, 6], "translation": [0, 2, 0]}, {"mesh": 1, "scale": [0.5, 1, 2]},
+                  {"mesh": 1, "translation": [0, 1, 1], "rotation": [0.5, 0.5, 0.5, 0.5]},
+                  {"mesh": 2, "matrix": [0, 2, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 3, 0, 0, 1]}],
+        "meshes": [{"primitives": [{**skinned, "targets": targets}]}, {"primitives": [plain]},
+                   {"primitives": [{**plain, "targets": [{"NORMAL": open_}, {"POSITION": puff}]}], "weights": [1, 0.5]}],
+        "skins": [{"joints": [0, 1], "inverseBindMatrices": binds}],
+        "animations": [{"name": "talk", "samplers": samplers, "channels": [
+            {"sampler": 0, "target": {"node": 2, "path": "weights"}},
+            {"sampler": 3, "target": {"node": 1, "path": "rotation"}},
+            {"sampler": 4, "target": {"node": 5, "path": "scale"}},
+            {"sampler": 5, "target": pointer("/nodes/4/rotation")}]},
+            {"name": "shout", "samplers": samplers, "channels": [
+                {"sampler": 1, "target": {"node": 2, "path": "weights"}},
+                {"sampler": 2, "target": pointer("/nodes/3/weights")},
+                {"sampler": 3, "target": {"node": 0, "path": "rotation"}}]}]})
 
 
 def check(name, samples):
@@ -231,14 +331,17 @@ def check(name, samples):
 
 
 with tempfile.TemporaryDirectory() as folder:
-    made = wave(folder)
-    check(made, 100)
-    prove = ["bake", made, "--whole", "--level", "-1", "--leaf", "2", "--prove"]
-    right = subprocess.run([program, *prove], capture_output=True, text=True)
-    assert right.returncode == 0 and ", 0 violated\n" in right.stdout and "undecided" not in right.stdout, right.stdout
-    for kind in ("no-remainder", "half-bump", "first-half"):
-        wrong = subprocess.run([program, *prove, "--sabotage", kind], capture_output=True, text=True)
-        assert wrong.returncode == 1, "%s is not found: %s" % (kind, wrong.stdout)
+    for made, kinds in ((face(folder), ("no-remainder", "half-bump", "first-half", "still-morphs")),
+                        (wave(folder), ("no-remainder", "half-bump", "first-half"))):
+        check(made, 100)
+        prove = ["bake", made, "--whole", "--level", "-1", "--leaf", "2", "--prove"]
+        for kdop in ("6", "18"):
+            right = subprocess.run([program, *prove, "--kdop", kdop], capture_output=True, text=True)
+            assert right.returncode == 0 and ", 0 violated\n" in right.stdout and "undecided" not in right.stdout, \
+                right.stdout + right.stderr
+        for kind in kinds:
+            wrong = subprocess.run([program, *prove, "--sabotage", kind], capture_output=True, text=True)
+            assert wrong.returncode == 1, "%s is not found: %s" % (kind, wrong.stdout)
     npz = os.path.join(folder, "wave.npz")
     assert subprocess.run([program, "bake", made, "--level", "-1", "--npz", npz, "--usd", npz + ".usda"],
                           capture_output=True).returncode == 0

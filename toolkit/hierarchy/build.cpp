@@ -111,6 +111,16 @@ Bvh with_rest_data(const DeformableSurface& surface, Bvh bvh, RestDetail detail)
     return bvh;
 }
 
+// The surface's triangles where they are grouped.
+const TriangleMesh& laid_out(const DeformableSurface& surface, TriangleMesh& kept)
+{
+    if (surface.layout.empty())
+        return surface.mesh;
+    if (surface.layout.size() != surface.mesh.vertices.size())
+        throw std::invalid_argument("build_bvh: the layout is not that of the mesh");
+    return kept = {surface.layout, surface.mesh.triangles};
+}
+
 // Centroids in units of the whole mesh, so that covariances neither overflow nor vanish.
 std::vector<Vec3> scaled_centroids(const TriangleMesh& mesh)
 {
@@ -135,7 +145,8 @@ Bvh build_bvh(const DeformableSurface& surface, std::size_t leaf_triangles, Rest
     if (surface.mesh.triangles.empty())
         return {};
     Bvh bvh;
-    split_all(scaled_centroids(surface.mesh), leaf_triangles, bvh);
+    TriangleMesh kept;
+    split_all(scaled_centroids(laid_out(surface, kept)), leaf_triangles, bvh);
     return with_rest_data(surface, std::move(bvh), detail);
 }
 
@@ -147,10 +158,12 @@ Bvh build_bvh(const DeformableSurface& surface, ClusterSize leaf, RestDetail det
     require_weights_of_mesh(surface);
     if (surface.mesh.triangles.empty())
         return {};
-    const std::vector<Vec3> centroid = scaled_centroids(surface.mesh);
+    TriangleMesh kept;
+    const TriangleMesh& mesh = laid_out(surface, kept);
+    const std::vector<Vec3> centroid = scaled_centroids(mesh);
     Bvh near; // only for the order of its triangles
     split_all(centroid, 1, near);
-    const Clusters clusters = cluster_triangles(surface.mesh, near.triangle, leaf);
+    const Clusters clusters = cluster_triangles(mesh, near.triangle, leaf);
     Bvh bvh;
     split_all(mean_of_each(clusters, centroid), 1, bvh);
     expand(clusters, bvh);

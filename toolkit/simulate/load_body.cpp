@@ -88,8 +88,6 @@ private:
     std::mutex mutex_;
 };
 
-bool is_character(const std::string& name) { return name.ends_with(".glb") || name.ends_with(".gltf"); }
-
 [[noreturn]] void complain(const std::string& file, const SceneBody& body, const std::string& field,
                            const std::string& what)
 {
@@ -142,7 +140,7 @@ LoadedBody load_body(const SceneBody& body, const std::string& file, MeshCache& 
     LoadedBody loaded;
     TriangleMesh& mesh = loaded.surface.mesh;
     std::optional<Character> character;
-    if (is_character(body.surface)) {
+    if (is_character_file(body.surface)) {
         if (body.size_m > 0)
             complain(file, body, "size", "a character keeps its own size");
         try {
@@ -152,9 +150,13 @@ LoadedBody load_body(const SceneBody& body, const std::string& file, MeshCache& 
         } catch (const InputError& error) {
             complain(file, body, "surface", error.what());
         }
+        if (character->carried > 0)
+            complain(file, body, "surface",
+                     body.surface + " has parts that are carried by nodes, which are at rest each by itself; only "
+                                    "skinned characters can be simulated");
         mesh = character->mesh;
         if (mesh.triangles.empty())
-            complain(file, body, "surface", body.surface + " has no skinned triangles");
+            complain(file, body, "surface", body.surface + " has no triangles");
     } else {
         MeshFile read = load_mesh(body, file, meshes);
         mesh = std::move(read.mesh);

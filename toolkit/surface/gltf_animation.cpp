@@ -55,8 +55,9 @@ Target target_of_pointer(const std::string& pointer)
 class AnimationReader {
 public:
     AnimationReader(GltfDocument& document, const GltfSkeleton& skeleton, const std::vector<GltfMorph>& morphs,
-                    const GltfValue& source, Character::Animation& out)
-        : document_(document), skeleton_(skeleton), morphs_(morphs), source_(source), out_(out)
+                    Morphs with_morphs, const GltfValue& source, Character::Animation& out)
+        : document_(document), skeleton_(skeleton), morphs_(morphs), with_morphs_(with_morphs), source_(source),
+          out_(out)
     {
     }
 
@@ -67,7 +68,7 @@ public:
         for (std::size_t c = 0; c < channels.size(); ++c)
             read_channel(channels[c]);
         for (const GltfMorph& morph : morphs_)
-            if (!morphed_.count(morph.node) && morph.moved_by(morph.weights))
+            if (with_morphs_ == Morphs::missing && !morphed_.count(morph.node) && morph.moved_by(morph.weights))
                 missing_.add(morphing, document_.at("nodes", morph.node).named());
         if (equal_times_ > 0)
             out_.notes.push_back("clip '" + out_.name + "': " + std::to_string(equal_times_) +
@@ -130,6 +131,10 @@ private:
             fail(where(channel, target) + ": is animated twice");
         if (target.path == "weights") {
             morphed_.insert(target.node);
+            if (with_morphs_ == Morphs::read) {
+                add_weights(channel, target, *morph);
+                return;
+            }
             extend(times(channel));
             if (morph->moved_by(read_accessor(document_, sampler(channel)["output"].index(), 1, missing_)))
                 missing_.add(morphing, document_.at("nodes", target.node).named());
@@ -171,13 +176,7 @@ private:
                        : target.path == "rotation"  ? Curve::Target::rotation
                                                     : Curve::Target::scale;
         const GltfValue from = sampler(channel);
-        const std::string interpolation = from.text_or("interpolation", "LINEAR");
-        if (interpolation == "STEP")
-            curve.interpolation = Curve::Interpolation::step;
-        else if (interpolation == "CUBICSPLINE")
-            curve.interpolation = Curve::Interpolation::cubic_spline;
-        else if (interpolation != "LINEAR")
-            fail(where(channel, target) + ": unknown interpolation '" + printable(interpolation) + "'");
+        curve.interpolation = interpolation_of(channel, target);
         curve.time_s = times(channel);
         const std::size_t components = curve.target == Curve::Target::rotation ? 4 : 3;
         const std::vector<double> values = read_accessor(document_, from["output"].index(), components, missing_);
@@ -186,23 +185,59 @@ private:
             std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(i), components, value.begin());
             curve.value.push_back(value);
         }
-        const std::size_t per_key = curve.interpolation == Curve::Interpolation::cubic_spline ? 3 : 1;
-        if (curve.time_s.empty() || curve.value.size() != per_key * curve.time_s.size())
-            fail(where(channel, target) + ": " + std::to_string(curve.time_s.size()) + " keys but " +
-                 std::to_string(curve.value.size()) + " values");
-        for (std::size_t i = 1; i < curve.time_s.size(); ++i) {
-            if (curve.time_s[i] < curve.time_s[i - 1])
+        require_keys(channel, target, curve.interpolation, curve.time_s, curve.value.size());
+        out_.curves.push_back(std::move(curve));
+    }
+
+    // Weights of a mesh's targets; a scalar for each, key after key.
+    void add_weights(const GltfValue& channel, const Target& target, const GltfMorph& morph)
+    {
+        WeightCurve curve;
+        curve.first_target = morph.first_target;
+        curve.count = static_cast<std::uint32_t>(morph.targets);
+        curve.interpolation = interpolation_of(channel, target);
+        curve.time_s = times(channel);
+        curve.value = read_accessor(document_, sampler(channel)["output"].index(), 1, missing_);
+        if (curve.value.size() % morph.targets != 0)
+            fail(where(channel, target) + ": " + std::to_string(curve.value.size()) + " weights for " +
+                 std::to_string(morph.targets) + " morph targets");
+        require_keys(channel, target, curve.interpolation, curve.time_s, curve.value.size() / morph.targets);
+        out_.morphs.push_back(std::move(curve));
+    }
+
+    Curve::Interpolation interpolation_of(const GltfValue& channel, const Target& target)
+    {
+        const std::string name = sampler(channel).text_or("interpolation", "LINEAR");
+        if (name == "STEP")
+            return Curve::Interpolation::step;
+        if (name == "CUBICSPLINE")
+            return Curve::Interpolation::cubic_spline;
+        if (name != "LINEAR")
+            fail(where(channel, target) + ": unknown interpolation '" + printable(name) + "'");
+        return Curve::Interpolation::linear;
+    }
+
+    // As many values as the keys want, which ascend.
+    void require_keys(const GltfValue& channel, const Target& target, Curve::Interpolation interpolation,
+                      const std::vector<double>& time_s, std::size_t values)
+    {
+        const std::size_t per_key = interpolation == Curve::Interpolation::cubic_spline ? 3 : 1;
+        if (time_s.empty() || values != per_key * time_s.size())
+            fail(where(channel, target) + ": " + std::to_string(time_s.size()) + " keys but " + std::to_string(values) +
+                 " values");
+        for (std::size_t i = 1; i < time_s.size(); ++i) {
+            if (time_s[i] < time_s[i - 1])
                 fail(where(channel, target) + ": key times do not ascend, key " + std::to_string(i) +
                      " is earlier than the one before");
-            equal_times_ += curve.time_s[i] == curve.time_s[i - 1];
+            equal_times_ += time_s[i] == time_s[i - 1];
         }
-        extend(curve.time_s);
-        out_.curves.push_back(std::move(curve));
+        extend(time_s);
     }
 
     GltfDocument& document_;
     const GltfSkeleton& skeleton_;
     const std::vector<GltfMorph>& morphs_;
+    Morphs with_morphs_;
     GltfValue source_;
     Character::Animation& out_;
     Missing missing_;
@@ -214,16 +249,8 @@ private:
 
 } // namespace
 
-bool GltfMorph::moved_by(const std::vector<double>& all) const
-{
-    for (std::size_t i = 0; i < all.size(); ++i)
-        if (all[i] != 0 && targets > 0 && moves[i % targets])
-            return true;
-    return false;
-}
-
 void read_animations(GltfDocument& document, const GltfSkeleton& skeleton, const std::vector<GltfMorph>& morphs,
-                     Character& out)
+                     Morphs with_morphs, Character& out)
 {
     std::set<std::string> names;
     for (std::size_t a = 0; a < document.count("animations"); ++a) {
@@ -235,7 +262,7 @@ void read_animations(GltfDocument& document, const GltfSkeleton& skeleton, const
                 animation.name = "anim" + std::to_string(a);
             if (!names.insert(animation.name).second)
                 names.insert(animation.name += "#" + std::to_string(a));
-            AnimationReader(document, skeleton, morphs, source, animation).read();
+            AnimationReader(document, skeleton, morphs, with_morphs, source, animation).read();
         } catch (const InputError& error) { // of no account unless it is wanted
             animation.fault = error.what();
         }
@@ -244,7 +271,7 @@ void read_animations(GltfDocument& document, const GltfSkeleton& skeleton, const
     out.rest.name = "rest";
     Missing missing;
     for (const GltfMorph& morph : morphs)
-        if (morph.moved_by(morph.weights))
+        if (with_morphs == Morphs::missing && morph.moved_by(morph.weights))
             missing.add(morphing, document.at("nodes", morph.node).named());
     out.rest.missing = missing.names();
 }

@@ -11,7 +11,7 @@ namespace {
 // Modelled wherever they are allowed: quantised positions are read as any integers are; hidden nodes are not drawn;
 // pointers at nodes are channels.
 constexpr std::string_view modelled_when_required[] = {"KHR_mesh_quantization", "KHR_node_visibility",
-                                                       "KHR_animation_pointer"};
+                                                       "KHR_animation_pointer", "VRMC_vrm"};
 
 constexpr std::string_view harmless_beginnings[] = {
     "KHR_materials_", "EXT_materials_", "ADOBE_materials_", "VRMC_materials_", "KHR_texture_",
@@ -80,6 +80,20 @@ void note_extensions(const GltfValue& value, Missing& missing, std::initializer_
     }
 }
 
+namespace {
+
+// Whether a VRM 0 file has springs.
+bool swings(const GltfValue& root)
+{
+    const auto extensions = root.find("extensions");
+    const auto vrm = extensions ? extensions->find("VRM") : std::nullopt;
+    const auto secondary = vrm ? vrm->find("secondaryAnimation") : std::nullopt;
+    const auto springs = secondary ? secondary->find("boneGroups") : std::nullopt;
+    return springs && springs->size() > 0;
+}
+
+} // namespace
+
 void note_extensions_of_file(const GltfDocument& document, Missing& missing)
 {
     const GltfValue root = document.root();
@@ -87,12 +101,16 @@ void note_extensions_of_file(const GltfDocument& document, Missing& missing)
         for (std::size_t i = 0; i < required->size(); ++i) {
             const std::string& name = (*required)[i].text();
             refuse_compression(name, root);
-            if (!is_harmless_extension(name) &&
+            if (!is_harmless_extension(name) && !(name == "VRM" && !swings(root)) &&
                 std::find(std::begin(modelled_when_required), std::end(modelled_when_required), name) ==
                     std::end(modelled_when_required))
                 missing.add("the extension " + one_line(name), "required");
         }
-    note_extensions(root, missing);
+    // What VRM says of a file is for an application that poses it; hair and clothes that swing move by themselves.
+    if (swings(root))
+        note_extensions(root, missing, {"VRMC_vrm"});
+    else
+        note_extensions(root, missing, {"VRMC_vrm", "VRM"});
 }
 
 } // namespace cinch

@@ -177,6 +177,13 @@ std::uint32_t GltfSkeleton::add_bone(std::size_t node)
     return bone_of_node_[node];
 }
 
+std::uint32_t GltfSkeleton::carrier(std::size_t node)
+{
+    out_.joints.push_back({add_bone(node), identity_map});
+    out_.influences.node_count = static_cast<std::uint32_t>(out_.joints.size());
+    return out_.influences.node_count - 1;
+}
+
 std::uint32_t GltfSkeleton::first_joint(std::size_t skin)
 {
     const GltfValue value = document_.at("skins", skin);

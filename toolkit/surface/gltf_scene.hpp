@@ -27,6 +27,8 @@ public:
     /// The first of a skin's joints among Character::joints, which are made where they are not there yet; and how
     /// many it has.
     std::uint32_t first_joint(std::size_t skin);
+    /// A joint of its own for a mesh that a node draws without a skin.
+    std::uint32_t carrier(std::size_t node);
     std::uint32_t joint_count(std::size_t skin) const { return joint_count_[skin]; }
     /// The bone of a node, or none.
     std::uint32_t bone_of(std::size_t node) const { return bone_of_node_[node]; }

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// A glTF 2.0 file as a skinned character. The order of the work: what the file requires, the scene, skins, meshes,
+// A glTF 2.0 file as a character. The order of the work: what the file requires, the scene, skins, meshes,
 // animations.
 #include <algorithm>
 #include <map>
 #include <set>
+#include <tuple>
 
 #include "cinch/environment.hpp"
 #include "toolkit/surface/character.hpp"
 #include "toolkit/surface/gltf_accessor.hpp"
 #include "toolkit/surface/gltf_animation.hpp"
+#include "toolkit/surface/gltf_morph.hpp"
 #include "toolkit/surface/gltf_scene.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 #include "toolkit/surface/text_scan.hpp"
@@ -33,18 +35,6 @@ std::vector<Triangle> triangles_of(const std::vector<std::uint32_t>& order, std:
     return out;
 }
 
-// Attributes that cannot move a vertex: those of shading, and an application's own. POSITION, JOINTS and WEIGHTS are
-// read.
-bool is_known_attribute(const std::string& name)
-{
-    if (name == "POSITION" || name == "NORMAL" || name == "TANGENT" || name.starts_with('_'))
-        return true;
-    for (const char* set : {"TEXCOORD_", "COLOR_", "JOINTS_", "WEIGHTS_"})
-        if (name.starts_with(set))
-            return true;
-    return false;
-}
-
 bool is_drawn(const GltfValue& primitive)
 {
     return primitive["attributes"].has("POSITION");
@@ -52,13 +42,12 @@ bool is_drawn(const GltfValue& primitive)
 
 class SurfaceReader {
 public:
-    SurfaceReader(GltfDocument& document, GltfSkeleton& skeleton, Missing& missing, Character& out)
-        : document_(document), skeleton_(skeleton), missing_(missing), out_(out)
+    SurfaceReader(GltfDocument& document, GltfSkeleton& skeleton, Morphs with_morphs, Missing& missing, Character& out)
+        : document_(document), skeleton_(skeleton), with_morphs_(with_morphs), missing_(missing), out_(out)
     {
     }
 
     std::vector<GltfMorph> morphs;
-
     // The mesh that a node draws; its skin's joints are there already.
     void add(std::size_t node_index)
     {
@@ -75,20 +64,32 @@ public:
             drawn |= is_drawn(primitives[p]);
             without_position_ += !is_drawn(primitives[p]);
         }
-        if (!skin && drawn)
-            missing_.add("a mesh without a skin", node.named());
-        if (!skin)
+        if (!drawn)
             return;
-        add_morph(node, node_index, mesh, primitives);
-        if (!placed_.insert({node["mesh"].index(), *skin}).second)
+        GltfMorph morph = read_morph(node, node_index, mesh);
+        const bool morphs_apart = with_morphs_ == Morphs::read && morph.targets > 0;
+        if (skin && !placed_.insert({morph.mesh, *skin, morphs_apart ? node_index : 0}).second)
             return; // at the same place again: the node's own transform does not count
+        first_target_ = morph.first_target = static_cast<std::uint32_t>(out_.targets.size());
+        if (morphs_apart) {
+            out_.targets.resize(out_.targets.size() + morph.targets);
+            morph.weights.resize(morph.targets, 0);
+            out_.target_weights.insert(out_.target_weights.end(), morph.weights.begin(), morph.weights.end());
+        }
+        if (morph.targets > 0)
+            morphs.push_back(morph);
+        const Carrier carrier{skin, skin ? 0 : skeleton_.carrier(node_index)};
+        out_.carried += !skin;
         for (std::size_t p = 0; p < primitives.size(); ++p)
             if (is_drawn(primitives[p]))
-                add_primitive(primitives[p], *skin);
+                add_primitive(primitives[p], carrier);
     }
 
     void finish()
     {
+        if (out_.carried && !out_.joints.empty() && out_.carried < out_.joints.size())
+            out_.notes.push_back(std::to_string(out_.carried) + (out_.carried == 1 ? " part" : " parts") +
+                                 " without a skin, carried by " + (out_.carried == 1 ? "a node" : "nodes"));
         if (without_position_)
             out_.notes.push_back(std::to_string(without_position_) +
                                  (without_position_ == 1 ? " primitive" : " primitives") +
@@ -96,30 +97,14 @@ public:
     }
 
 private:
-    [[noreturn]] void fail(const std::string& reason) const { throw InputError::in_file(document_.file(), reason); }
+    using Row = std::vector<std::pair<std::uint32_t, double>>; // simulation nodes with weights
+    // What moves a mesh: a skin, or a joint of its own.
+    struct Carrier {
+        std::optional<std::size_t> skin;
+        std::uint32_t joint;
+    };
 
-    void add_morph(const GltfValue& node, std::size_t node_index, const GltfValue& mesh, const GltfValue& primitives)
-    {
-        GltfMorph morph;
-        morph.node = node_index;
-        morph.mesh = node["mesh"].index();
-        for (std::size_t p = 0; p < primitives.size(); ++p)
-            if (const auto targets = primitives[p].find("targets"); targets && is_drawn(primitives[p])) {
-                morph.targets = std::max(morph.targets, targets->size());
-                morph.moves.resize(morph.targets, 0);
-                for (std::size_t t = 0; t < targets->size(); ++t)
-                    for (const std::string& name : (*targets)[t].keys())
-                        morph.moves[t] |= name == "POSITION" || !is_known_attribute(name);
-            }
-        if (morph.targets == 0)
-            return;
-        for (const GltfValue& holder : {node, mesh})
-            if (const auto weights = holder.find("weights")) {
-                morph.weights = weights->numbers(weights->size());
-                break;
-            }
-        morphs.push_back(std::move(morph));
-    }
+    [[noreturn]] void fail(const std::string& reason) const { throw InputError::in_file(document_.file(), reason); }
 
     std::vector<std::uint32_t> vertex_order(const GltfValue& primitive, std::size_t vertices)
     {
@@ -139,7 +124,7 @@ private:
         return order;
     }
 
-    void add_primitive(const GltfValue& primitive, std::size_t skin)
+    void add_primitive(const GltfValue& primitive, const Carrier& carrier)
     {
         const std::size_t mode = primitive.index_or("mode", triangles);
         if (mode > triangle_fan)
@@ -153,9 +138,10 @@ private:
         const std::vector<double> positions = read_accessor(document_, attributes["POSITION"].index(), 3, missing_);
         const std::size_t vertices = positions.size() / 3;
         std::size_t sets = 0;
-        for (const std::string& name : attributes.keys())
-            sets += name.starts_with("JOINTS_") || name.starts_with("WEIGHTS_");
-        if (sets == 0) {
+        if (carrier.skin)
+            for (const std::string& name : attributes.keys())
+                sets += name.starts_with("JOINTS_") || name.starts_with("WEIGHTS_");
+        if (carrier.skin && sets == 0) {
             missing_.add("a part of a skinned mesh without joints and weights", primitive.place());
             return;
         }
@@ -169,17 +155,21 @@ private:
                 primitive.fail("has " + std::to_string(vertices) +
                                " positions but another number of joints or weights");
         }
+        std::vector<Displacements> displaced(vertices);
+        if (with_morphs_ == Morphs::read)
+            displaced = read_displacements(document_, primitive, vertices, first_target_, missing_);
         std::vector<std::uint32_t> vertex_of(vertices);
         for (std::size_t k = 0; k < vertices; ++k)
-            vertex_of[k] = weld(&positions[3 * k], influences_of(primitive, k, joints, weights, skin));
+            vertex_of[k] = weld(&positions[3 * k],
+                                carrier.skin ? influences_of(primitive, k, joints, weights, *carrier.skin)
+                                             : Row{{carrier.joint, 1}},
+                                displaced[k]);
         for (const Triangle& t : triangles_of(vertex_order(primitive, vertices), mode))
             out_.mesh.triangles.push_back({vertex_of[t[0]], vertex_of[t[1]], vertex_of[t[2]]});
     }
 
-    std::vector<std::pair<std::uint32_t, double>> influences_of(const GltfValue& primitive, std::size_t k,
-                                                                const std::vector<std::vector<double>>& joints,
-                                                                const std::vector<std::vector<double>>& weights,
-                                                                std::size_t skin)
+    Row influences_of(const GltfValue& primitive, std::size_t k, const std::vector<std::vector<double>>& joints,
+                      const std::vector<std::vector<double>>& weights, std::size_t skin)
     {
         const std::uint32_t first = skeleton_.first_joint(skin), count = skeleton_.joint_count(skin);
         std::map<std::uint32_t, double> sum; // a joint may be named twice; zero-weight slots are padding
@@ -202,11 +192,11 @@ private:
         return {sum.begin(), sum.end()};
     }
 
-    std::uint32_t weld(const double* point, std::vector<std::pair<std::uint32_t, double>> influences)
+    std::uint32_t weld(const double* point, const Row& influences, const Displacements& displaced)
     {
         const std::array<double, 3> key{point[0] + 0.0, point[1] + 0.0, point[2] + 0.0}; // -0 and 0 are one place
         const auto [it, is_new] =
-            welded_.try_emplace({key, influences}, static_cast<std::uint32_t>(out_.mesh.vertices.size()));
+            welded_.try_emplace({key, influences, displaced}, static_cast<std::uint32_t>(out_.mesh.vertices.size()));
         if (is_new) {
             out_.mesh.vertices.emplace_back(key[0], key[1], key[2]);
             for (const auto& [node, weight] : influences) {
@@ -214,24 +204,29 @@ private:
                 out_.influences.weight.push_back(weight);
             }
             out_.influences.row.push_back(static_cast<std::uint32_t>(out_.influences.node.size()));
+            for (const auto& [target, d] : displaced) {
+                out_.targets[target].vertex.push_back(it->second);
+                out_.targets[target].displacement.emplace_back(d[0], d[1], d[2]);
+            }
         }
         return it->second;
     }
 
     GltfDocument& document_;
     GltfSkeleton& skeleton_;
+    Morphs with_morphs_;
     Missing& missing_;
     Character& out_;
-    std::set<std::pair<std::size_t, std::size_t>> placed_; ///< meshes with the skins that deform them
-    std::map<std::pair<std::array<double, 3>, std::vector<std::pair<std::uint32_t, double>>>, std::uint32_t> welded_;
+    // Meshes with the skins that deform them, and where they have morph targets the nodes, whose weights may differ.
+    std::set<std::tuple<std::size_t, std::size_t, std::size_t>> placed_;
+    std::map<std::tuple<std::array<double, 3>, Row, Displacements>, std::uint32_t> welded_;
+    std::uint32_t first_target_ = 0; // of the mesh that is being read
     std::size_t without_position_ = 0;
 };
 
-void read(GltfDocument& document, Missing& missing, Character& out)
+void read(GltfDocument& document, Morphs with_morphs, Missing& missing, Character& out)
 {
     note_extensions_of_file(document, missing);
-    if (document.count("skins") == 0)
-        throw InputError::in_file(out.file, "has no skin; for a plain mesh export OBJ, OFF, PLY or STL");
     const GltfScene scene = read_scene(document, missing, out.notes);
     GltfSkeleton skeleton(document, scene, missing, out);
     std::set<std::size_t> drawn, skins; // in the order of the file
@@ -249,17 +244,16 @@ void read(GltfDocument& document, Missing& missing, Character& out)
     }
     if (hidden)
         out.notes.push_back(std::to_string(hidden) + (hidden == 1 ? " hidden mesh" : " hidden meshes") + " left out");
-    if (skins.empty())
-        throw InputError::in_file(
-            out.file,
-            "draws no mesh that a skin deforms in its default scene; for a plain mesh export OBJ, OFF, PLY or STL");
+    if (drawn.empty())
+        throw InputError::in_file(out.file, "draws no mesh in its default scene");
     for (const std::size_t skin : skins)
         skeleton.first_joint(skin);
-    SurfaceReader surface(document, skeleton, missing, out);
+    SurfaceReader surface(document, skeleton, with_morphs, missing, out);
     for (const std::size_t node : drawn)
         surface.add(node);
     surface.finish();
-    read_animations(document, skeleton, surface.morphs, out);
+    out.skins = skins.size();
+    read_animations(document, skeleton, surface.morphs, with_morphs, out);
 }
 
 // What is missing makes an animation one that cannot be used.
@@ -280,7 +274,7 @@ void require_whole(Character& character)
 
 } // namespace
 
-Character parse_gltf(std::string_view bytes, const std::string& file, Coverage coverage)
+Character parse_gltf(std::string_view bytes, const std::string& file, Coverage coverage, Morphs morphs)
 {
     require_default_arithmetic();
     GltfDocument document(bytes, file);
@@ -288,7 +282,7 @@ Character parse_gltf(std::string_view bytes, const std::string& file, Coverage c
     out.file = file;
     Missing missing;
     try {
-        read(document, missing, out);
+        read(document, morphs, missing, out);
     } catch (const InputError& error) {
         if (missing.empty())
             throw;
@@ -300,9 +294,9 @@ Character parse_gltf(std::string_view bytes, const std::string& file, Coverage c
     return out;
 }
 
-Character read_gltf(const std::filesystem::path& path, Coverage coverage)
+Character read_gltf(const std::filesystem::path& path, Coverage coverage, Morphs morphs)
 {
-    return parse_gltf(read_bytes(path), path.string(), coverage);
+    return parse_gltf(read_bytes(path), path.string(), coverage, morphs);
 }
 
 } // namespace cinch

@@ -6,8 +6,8 @@
 
 #include <Eigen/Geometry>
 
+#include "cinch/deform.hpp"
 #include "cinch/environment.hpp"
-#include "cinch/surface.hpp"
 #include "toolkit/surface/character.hpp"
 
 namespace cinch {
@@ -134,6 +134,49 @@ struct Motion {
 
 } // namespace
 
+bool moves_targets(const Character& character, const Character::Animation& animation)
+{
+    std::vector<double> most = character.target_weights; // absolute
+    for (const WeightCurve& curve : animation.morphs)
+        for (std::size_t i = 0; i < curve.value.size(); ++i) {
+            double& weight = most[curve.first_target + i % curve.count];
+            weight = std::max(i < curve.count ? 0 : std::abs(weight), std::abs(curve.value[i]));
+        }
+    for (std::size_t i = 0; i < most.size(); ++i)
+        if (most[i] != 0 && !character.targets[i].vertex.empty())
+            return true;
+    return false;
+}
+
+bool is_character_file(const std::filesystem::path& path)
+{
+    std::string extension = path.extension().string();
+    for (char& c : extension)
+        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return extension == ".glb" || extension == ".gltf" || extension == ".vrm";
+}
+
+DeformableSurface surface_of(const Character& character, WeightReport* report)
+{
+    DeformableSurface surface{character.mesh, to_dyadic(character.influences, report)};
+    if (character.skins + character.carried < 2 || !character.rest.fault.empty())
+        return surface;
+    Clip::Frame maps;
+    try {
+        maps = Motion{character.file, "rest", character.bones, character.joints, {}, 0, 0, 0}.frame(0);
+    } catch (const InputError&) { // it overflows
+        return surface;
+    }
+    surface.layout.resize(character.mesh.vertices.size());
+    evaluate(character.mesh.vertices, surface.weights, maps, surface.layout);
+    for (const Vec3& place : surface.layout)
+        if (!place.allFinite()) {
+            surface.layout.clear();
+            break;
+        }
+    return surface;
+}
+
 Clip rest_pose(const Character& character) { return sample(character, character.rest, 1); }
 
 Clip sample(const Character& character, const Character::Animation& animation, double fps)
@@ -141,6 +184,10 @@ Clip sample(const Character& character, const Character::Animation& animation, d
     require_default_arithmetic();
     if (!animation.fault.empty())
         throw InputError(animation.fault);
+    if (moves_targets(character, animation))
+        throw InputError::in_file(character.file, "clip '" + animation.name +
+                                                      "' has morph targets with weights that are not 0, which its "
+                                                      "frames would lack");
     const double length = animation.last_s - animation.first_s;
     constexpr double most_frames = 1e12;
     if (!(length * fps < most_frames - 1))

@@ -71,50 +71,14 @@ Mat3 cross(const Vec3& n)
     return out;
 }
 
-// Which piece of a curve holds at a time, and the time of its first key; one past the last key is constant.
-struct Piece {
-    std::size_t key;
-    bool constant;
-};
-Piece piece_of(const Curve& curve, double t)
+// A curve's piece as a path of its first N numbers.
+template <std::size_t N> Polynomial<N> path_of(const Curve& curve, const CurvePiece& piece)
 {
-    const auto next = std::upper_bound(curve.time_s.begin(), curve.time_s.end(), t);
-    if (next == curve.time_s.begin())
-        return {0, true};
-    const auto key = static_cast<std::size_t>(next - curve.time_s.begin() - 1);
-    return {key, next == curve.time_s.end() || curve.interpolation == Curve::Interpolation::step};
-}
-
-// The piece as a polynomial of the time since its key; LINEAR and CUBICSPLINE of the glTF specification, appendix C.
-template <std::size_t N> Polynomial<N> polynomial_of(const Curve& curve, const Piece& piece)
-{
-    const bool cubic = curve.interpolation == Curve::Interpolation::cubic_spline;
-    auto read = [&](std::size_t i) {
+    return polynomial_of<N>(curve.time_s, curve.interpolation, piece, [&](std::size_t i) {
         std::array<double, N> out;
         std::copy_n(curve.value[i].begin(), N, out.begin());
         return out;
-    };
-    const std::size_t k = piece.key;
-    const auto v0 = read(cubic ? 3 * k + 1 : k);
-    Polynomial<N> path{{v0}};
-    if (piece.constant)
-        return path;
-    const double d = curve.time_s[k + 1] - curve.time_s[k];
-    if (!cubic) {
-        const auto v1 = read(k + 1);
-        path.c.emplace_back();
-        for (std::size_t n = 0; n < N; ++n)
-            path.c[1][n] = (v1[n] - v0[n]) / d;
-        return path;
-    }
-    const auto out = read(3 * k + 2), in = read(3 * k + 3), v1 = read(3 * k + 4);
-    path.c.resize(4);
-    for (std::size_t n = 0; n < N; ++n) {
-        path.c[1][n] = out[n];
-        path.c[2][n] = (3 * (v1[n] - v0[n]) / d - (2 * out[n] + in[n])) / d;
-        path.c[3][n] = (2 * (v0[n] - v1[n]) / d + (out[n] + in[n])) / d / d;
-    }
-    return path;
+    });
 }
 
 double infinite_unless(double x) { return x < infinity ? x : infinity; }
@@ -251,21 +215,21 @@ BonePath::BonePath(const Bone& bone, const std::vector<const Curve*>& curves, do
         matrix_norm_ = std::sqrt(std::max(squared.eigenvalues()[2], 0.0)) + 0x1p-40 * matrix_magnitude_;
     }
     for (const Curve* curve : curves) {
-        const Piece piece = piece_of(*curve, middle_s);
+        const CurvePiece piece = piece_of(curve->time_s, curve->interpolation, middle_s);
         const double key_s = curve->time_s[piece.key],
                      length_s = piece.constant ? 0 : curve->time_s[piece.key + 1] - key_s;
         switch (curve->target) {
         case Curve::Target::translation:
-            p_ = {key_s, length_s, polynomial_of<3>(*curve, piece)};
+            p_ = {key_s, length_s, path_of<3>(*curve, piece)};
             break;
         case Curve::Target::scale:
-            s_ = {key_s, length_s, polynomial_of<3>(*curve, piece)};
+            s_ = {key_s, length_s, path_of<3>(*curve, piece)};
             break;
         case Curve::Target::rotation:
             r_.key_s = key_s;
             if (curve->interpolation == Curve::Interpolation::cubic_spline)
                 r_.path = piece.constant ? TurnPath::fixed(curve->value[3 * piece.key + 1])
-                                         : TurnPath::cubic(polynomial_of<4>(*curve, piece), length_s);
+                                         : TurnPath::cubic(path_of<4>(*curve, piece), length_s);
             else
                 r_.path = piece.constant
                               ? TurnPath::fixed(curve->value[piece.key])
@@ -299,23 +263,8 @@ BonePath::Jet BonePath::at(double t_s) const
 BonePath::Limits BonePath::over(double a_s, double b_s) const
 {
     Limits out;
-    auto norms = [&](const Since<Polynomial<3>>& path, double (*size)(const Polynomial<3>&), std::array<double, 4>& sup,
-                     std::array<double, 3>& magnitude) {
-        const double h = b_s - a_s;
-        Polynomial<3> piece = path.path.over(a_s - path.key_s, b_s - path.key_s);
-        double unit = 1;
-        for (std::size_t k = 0; k < 4; ++k) {
-            const double against = path.path.magnitude(k, path.length_s);
-            const double own = unit > 0 ? size(piece) / unit * rounded_up : k > 0 ? against : size(piece) * rounded_up;
-            sup[k] = path.path.degree() < k ? 0 : own + 0x1p-44 * against;
-            if (k < 3)
-                magnitude[k] = against;
-            piece = piece.slope();
-            unit *= h;
-        }
-    };
-    norms(
-        p_, [](const Polynomial<3>& p) { return p.greatest_norm(); }, out.p, out.p_magnitude);
+    suprema(
+        p_, a_s, b_s, [](const Polynomial<3>& p) { return p.greatest_norm(); }, out.p, out.p_magnitude);
     if (is_matrix_) {
         out.m = {matrix_norm_, 0, 0, 0};
         out.m_magnitude = {matrix_magnitude_, 0, 0};
@@ -330,7 +279,7 @@ BonePath::Limits BonePath::over(double a_s, double b_s) const
                 most = std::max(most, std::abs(x));
         return most;
     };
-    norms(s_, greatest_entry, s, s_magnitude);
+    suprema(s_, a_s, b_s, greatest_entry, s, s_magnitude);
     const TurnPath::Limits r = r_.path.over(a_s - r_.key_s, b_s - r_.key_s);
     static constexpr double choose[4][4] = {{1}, {1, 1}, {1, 2, 1}, {1, 3, 3, 1}};
     auto times = [](double x, double y) { return x == 0 || y == 0 ? 0 : x * y; }; // ∞·0 is 0 here

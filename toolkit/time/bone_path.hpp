@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 
 #include "cinch/io.hpp"
-#include "toolkit/time/polynomial.hpp"
+#include "toolkit/time/curve_piece.hpp"
 
 namespace cinch {
 
@@ -64,10 +64,6 @@ public:
     Limits over(double a_s, double b_s) const;
 
 private:
-    template <class Path> struct Since {
-        double key_s = 0, length_s = 0; ///< of the first key, and to the next one
-        Path path;
-    };
     bool is_matrix_ = false;
     Mat3 matrix_ = Mat3::Identity();
     double matrix_norm_ = 1, matrix_magnitude_ = 1;

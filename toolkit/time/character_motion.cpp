@@ -3,11 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <set>
 
 #include "cinch/environment.hpp"
+#include "toolkit/surface/character.hpp"
 #include "toolkit/time/bone_path.hpp"
+#include "toolkit/time/weight_path.hpp"
 
 namespace cinch {
 namespace {
@@ -76,17 +79,34 @@ AffineMap joint_map(const World& g, std::size_t k, const AffineMap& bind)
 
 class CharacterMotion {
 public:
-    CharacterMotion(const Character& character, const Character::Animation& animation, std::vector<Reach> reach)
+    CharacterMotion(const Character& character, const Character::Animation& animation,
+                    const DeformableSurface& surface)
         : file_(character.file), name_(animation.name), bones_(character.bones), joints_(character.joints),
-          curves_(animation.curves), curves_of_(bones_.size()), reach_(std::move(reach))
+          curves_(animation.curves), curves_of_(bones_.size()), reach_(reaches(surface))
     {
         require_default_arithmetic();
         if (!animation.fault.empty())
             throw InputError(animation.fault);
         for (std::size_t c = 0; c < curves_.size(); ++c)
             curves_of_[curves_[c].bone].push_back(c);
+        if (!moves_targets(character, animation))
+            return;
+        weights_ = character.target_weights;
+        weight_curves_ = animation.morphs;
+        farthest_.resize(joints_.size());
+        for (std::uint32_t i = 0; i < character.targets.size(); ++i) {
+            std::map<std::uint32_t, double> most;
+            const MorphTarget& target = character.targets[i];
+            for (std::size_t n = 0; n < target.vertex.size(); ++n)
+                for (const std::uint32_t j : surface.weights.of(target.vertex[n]).node)
+                    most[j] = std::max(most[j], target.displacement[n].norm() * wider);
+            for (const auto& [j, size] : most)
+                farthest_[j].push_back({i, size});
+        }
     }
 
+    bool morphs() const { return !weights_.empty(); }
+    std::vector<double> weights(double t_s) const { return WeightPath(weights_, weight_curves_, t_s).at(0, t_s); }
     std::vector<AffineMap> at(double t_s) const;
     MotionInterval over(double a_s, double b_s) const;
 
@@ -99,6 +119,11 @@ private:
     std::vector<Curve> curves_;
     std::vector<std::vector<std::size_t>> curves_of_; // a bone
     std::vector<Reach> reach_;
+    // Of morph targets, where their weights are not all 0: weights that no curve sets, curves, and how far each target
+    // displaces a vertex that a joint influences.
+    std::vector<double> weights_;
+    std::vector<WeightCurve> weight_curves_;
+    std::vector<std::vector<std::pair<std::uint32_t, double>>> farthest_;
 };
 
 std::vector<BonePath> CharacterMotion::paths(double middle_s) const
@@ -144,17 +169,41 @@ MotionInterval CharacterMotion::over(double a_s, double b_s) const
     static constexpr double choose[4][4] = {{1}, {1, 1}, {1, 2, 1}, {1, 3, 3, 1}};
     auto times = [](double x, double y) { return x == 0 || y == 0 ? 0 : x * y; };
 
-    MotionInterval out{a_s, b_s, {}, {}, {}, {}};
+    MotionInterval out{a_s, b_s, {}, {}, {}, {}, {}};
+    std::vector<WeightPath::Limits> weights;
+    if (morphs()) {
+        const WeightPath of(weights_, weight_curves_, middle_s);
+        weights = of.over(a_s, b_s);
+        out.morph.first = of.at(0, a_s);
+        out.morph.last = of.at(0, b_s);
+        for (std::size_t k = 0; k < 3; ++k)
+            out.morph.at[k] = of.at(k, middle_s);
+    }
     const double bend = -(b_s - a_s) * (b_s - a_s) / 8;
     for (std::size_t j = 0; j < joints_.size(); ++j) {
         const Joint& joint = joints_[j];
         out.first.push_back(joint_map(first[joint.bone], 0, joint.inverse_bind));
         out.last.push_back(joint_map(last[joint.bone], 0, joint.inverse_bind));
-        AffineMap second = joint_map(middle[joint.bone], 2, joint.inverse_bind);
-        for (auto& row : second.m)
-            for (double& x : row)
-                x *= bend;
-        out.bend.push_back(second);
+        auto middle_map = [&](std::size_t k, double factor) {
+            AffineMap map = joint_map(middle[joint.bone], k, joint.inverse_bind);
+            for (auto& row : map.m)
+                for (double& x : row)
+                    x *= factor;
+            return map;
+        };
+        out.bend.push_back(middle_map(2, bend));
+        std::array<double, 4> displaced{}; // suprema of derivatives of Σ_i a_i d_i
+        std::array<double, 3> displaced_without{};
+        if (morphs()) {
+            out.morph.slope.push_back(middle_map(1, 2 * bend));
+            out.morph.still.push_back(middle_map(0, bend));
+            for (const auto& [i, size] : farthest_[j])
+                for (std::size_t k = 0; k < 4; ++k) {
+                    displaced[k] += times(weights[i].sup[k], size) * wider;
+                    if (k < 3)
+                        displaced_without[k] += times(weights[i].magnitude[k], size) * wider;
+                }
+        }
 
         // Majorants from the joint up to the root (time: of x in the frame of each bone on the way), of derivatives 0
         // to 3; and without cancellation, of 0 to 2.
@@ -162,10 +211,12 @@ MotionInterval CharacterMotion::over(double a_s, double b_s) const
         const Mat3 b = linear(joint.inverse_bind);
         const double of_bind = b.norm(); // Frobenius's, not less than that of any direction
         Vec3 centre = apply(joint.inverse_bind, reach.centre);
-        double radius = of_bind * reach.radius * wider;
-        std::array<double, 4> r{centre.norm() + radius, 0, 0, 0};
-        std::array<double, 3> without{of_bind * (reach.centre.norm() + reach.radius) + shift(joint.inverse_bind).norm(),
-                                      0, 0};
+        double radius = of_bind * (reach.radius + displaced[0]) * wider;
+        std::array<double, 4> r{centre.norm() + radius, of_bind * displaced[1] * wider, of_bind * displaced[2] * wider,
+                                of_bind * displaced[3] * wider};
+        std::array<double, 3> without{of_bind * (reach.centre.norm() + reach.radius + displaced_without[0]) +
+                                          shift(joint.inverse_bind).norm(),
+                                      of_bind * displaced_without[1] * wider, of_bind * displaced_without[2] * wider};
         r[0] = r[0] * wider + 0x1p-48 * without[0];
         std::size_t depth = 1;
         for (std::int64_t at = joint.bone; at >= 0; at = bones_[static_cast<std::size_t>(at)].parent, ++depth) {
@@ -212,16 +263,24 @@ MotionInterval CharacterMotion::over(double a_s, double b_s) const
 TimedMotion character_motion(const Character& character, const Character::Animation& animation,
                              const DeformableSurface& surface)
 {
-    const auto motion = std::make_shared<const CharacterMotion>(character, animation, reaches(surface));
+    const auto motion = std::make_shared<const CharacterMotion>(character, animation, surface);
     std::set<double> keys{animation.first_s, animation.last_s};
     for (const Curve& curve : animation.curves)
         for (const double t : curve.time_s)
             if (t > animation.first_s && t < animation.last_s)
                 keys.insert(t);
-    return {animation.name,
-            {keys.begin(), keys.end()},
-            [motion](double t) { return motion->at(t); },
-            [motion](double a, double b) { return motion->over(a, b); }};
+    for (const WeightCurve& curve : animation.morphs)
+        for (const double t : curve.time_s)
+            if (t > animation.first_s && t < animation.last_s)
+                keys.insert(t);
+    TimedMotion out{animation.name,
+                    {keys.begin(), keys.end()},
+                    [motion](double t) { return motion->at(t); },
+                    nullptr,
+                    [motion](double a, double b) { return motion->over(a, b); }};
+    if (motion->morphs())
+        out.weights = [motion](double t) { return motion->weights(t); };
+    return out;
 }
 
 } // namespace cinch

@@ -51,8 +51,20 @@ double greatest_between(double first, double last, double bump, double path)
     return succ(std::min(parabola, std::max(most, lipschitz)));
 }
 
-IntervalRefitter::IntervalRefitter(const Bvh& bvh, const DeformableSurface& surface, const RefitOptions& options)
-    : bvh_(bvh), kdop_(options.kdop), refit_(bvh, surface, options)
+void merge_children(const Bvh& bvh, std::size_t k, std::span<double> supports)
+{
+    for (std::size_t i = bvh.bvs.size(); i-- > 0;) { // children come after parents
+        if (bvh.bvs[i].is_leaf())
+            continue;
+        const std::size_t first = bvh.bvs[i].first_child * k;
+        for (std::size_t d = 0; d < k; ++d)
+            supports[i * k + d] = std::min(supports[i * k + d], std::max(supports[first + d], supports[first + k + d]));
+    }
+}
+
+IntervalRefitter::IntervalRefitter(const Bvh& bvh, const DeformableSurface& surface, const RefitOptions& options,
+                                   std::span<const MorphTarget> targets)
+    : bvh_(bvh), kdop_(options.kdop), refit_(bvh, surface, options), morphs_(bvh, surface, targets)
 {
     const std::size_t count = bvh.bvs.size() * static_cast<std::size_t>(kdop_);
     first_.resize(count);
@@ -60,22 +72,38 @@ IntervalRefitter::IntervalRefitter(const Bvh& bvh, const DeformableSurface& surf
     bend_.resize(count);
 }
 
+void IntervalRefitter::at(std::span<const AffineMap> maps, std::span<const double> weights,
+                          std::span<double> supports)
+{
+    refit_(maps, supports);
+    if (const MorphBoxes::Term term{weights, maps}; !weights.empty())
+        morphs_.add({&term, 1}, kdop_, supports);
+    merge_children(bvh_, kdop(), supports);
+}
+
 void IntervalRefitter::operator()(const MotionInterval& motion, std::span<double> supports)
 {
     if (supports.size() != first_.size())
         throw std::invalid_argument("supports has " + std::to_string(supports.size()) + " entries; the BVs need " +
                                     std::to_string(first_.size()));
-    if (same(last_maps_, motion.first))
+    const MotionInterval::Morph& morph = motion.morph;
+    if (same(last_maps_, motion.first) && last_weights_ == morph.first)
         first_.swap(last_);
     else
-        refit_(motion.first, first_);
+        at(motion.first, morph.first, first_);
     last_maps_.clear();
-    refit_(motion.last, last_);
+    at(motion.last, morph.last, last_);
     last_maps_ = motion.last;
+    last_weights_ = morph.last;
     if (std::all_of(motion.bend.begin(), motion.bend.end(), is_zero))
         std::fill(bend_.begin(), bend_.end(), 0.0); // places move along straight lines
     else
         refit_(motion.bend, bend_);
+    if (!morph.empty()) { // (T e)″ = T″e + 2T′e′ + T e″, e the displacements
+        const MorphBoxes::Term terms[3] = {
+            {morph.at[0], motion.bend}, {morph.at[1], morph.slope}, {morph.at[2], morph.still}};
+        morphs_.add(terms, kdop_, bend_);
+    }
     const auto axes = axes_of(kdop_);
     const auto k = static_cast<std::size_t>(kdop_);
     for (std::size_t i = 0; i < bvh_.bvs.size(); ++i) {
@@ -85,8 +113,11 @@ void IntervalRefitter::operator()(const MotionInterval& motion, std::span<double
         };
         using L = MotionInterval::Limits;
         // Evaluation of a vertex of n influences rounds by (n + 8)u of what `error`, at least 2⁻⁴² of it, stands for.
-        const double evaluation = 1 + bv.vertex_influences / 256.0;
-        const double remainder = limit(&L::remainder) + limit(&L::bend_error), bump = limit(&L::bump),
+        // So do displacements by (m + n + 16)u of four times it, m the targets; see MorphBoxes.
+        const double evaluation =
+            1 + bv.vertex_influences / 256.0 +
+            (morph.empty() ? 0 : static_cast<double>(morphs_.count(i) + bv.node.size()) / 256);
+        const double remainder = limit(&L::remainder) + limit(&L::bend_error) * evaluation, bump = limit(&L::bump),
                      path = limit(&L::path), error = limit(&L::error) * evaluation;
         for (std::size_t d = 0; d < k; ++d) {
             const auto& axis = axes[d / 2];
@@ -99,6 +130,7 @@ void IntervalRefitter::operator()(const MotionInterval& motion, std::span<double
                                             std::isnan(s) ? scaled(bump) : s, scaled(path));
         }
     }
+    merge_children(bvh_, k, supports);
 }
 
 } // namespace cinch

@@ -52,7 +52,7 @@ struct Frames {
 
     MotionInterval over(double a, double b) const
     {
-        MotionInterval out{a, b, {}, {}, {}, {}};
+        MotionInterval out{a, b, {}, {}, {}, {}, {}};
         if (time_s.size() == 1) {
             out.first = out.last = clip.frame(0);
         } else {
@@ -113,7 +113,7 @@ TimedMotion linear_motion(const Clip& of, const DeformableSurface& surface)
     auto frames = std::make_shared<Frames>(Frames{of, {}, reaches(surface)});
     for (std::size_t i = 0; i < of.frame_count(); ++i)
         frames->time_s.push_back(of.time_s(i));
-    TimedMotion out{of.name, frames->time_s, [frames](double t) { return frames->at(t); },
+    TimedMotion out{of.name, frames->time_s, [frames](double t) { return frames->at(t); }, nullptr,
                     [frames](double a, double b) { return frames->over(a, b); }};
     out.keys.erase(std::unique(out.keys.begin(), out.keys.end()), out.keys.end());
     return out;

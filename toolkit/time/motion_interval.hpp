@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <functional>
 #include <string>
 #include <vector>
@@ -24,6 +25,16 @@ struct MotionInterval {
         double bend_error = 0; ///< ≥ how far `bend` is from what it stands for, at y
     };
     std::vector<Limits> limits;
+
+    /// Where morph targets displace vertices, x(t) = T_j(t) (y + Σ_i a_i(t) d_i), limits are of that. Empty where they
+    /// do not.
+    struct Morph {
+        std::vector<double> first, last;       ///< a at both ends, computed
+        std::array<std::vector<double>, 3> at; ///< a, a′ and a″ at m, computed
+        std::vector<AffineMap> slope, still;   ///< −(D²/4) T_j′(m) and −(D²/8) T_j(m), computed
+        bool empty() const { return first.empty(); }
+    };
+    Morph morph;
 };
 
 /// A clip as a function of real time.
@@ -31,7 +42,8 @@ struct TimedMotion {
     std::string name;         ///< of the clip
     std::vector<double> keys; ///< ascending, each once: the times at which something may turn, the
                               ///< first and the last time among them
-    std::function<std::vector<AffineMap>(double)> at; ///< T_j(t), computed
+    std::function<std::vector<AffineMap>(double)> at;  ///< T_j(t), computed
+    std::function<std::vector<double>(double)> weights; ///< of morph targets, computed; none where they move nothing
     /// Of an interval without a key strictly inside. At a key where a curve jumps, the interval's own value counts.
     std::function<MotionInterval(double, double)> over;
 

@@ -56,6 +56,15 @@ struct Curve {
     std::vector<std::array<double, 4>> value;
 };
 
+/// One key-framed curve of the weights of morph targets.
+struct WeightCurve {
+    std::uint32_t first_target = 0; ///< index into Character::targets; the targets of one mesh stand together
+    std::uint32_t count = 0;        ///< of them
+    Curve::Interpolation interpolation = Curve::Interpolation::linear; ///< of its keys
+    std::vector<double> time_s; ///< ascending; of keys at the same time the last one holds from then on
+    std::vector<double> value;  ///< `count` per key, or for a cubic spline 3 × `count`: in-tangents, values, out-tangents
+};
+
 /// A node of the glTF scene graph that moves joints.
 struct Bone {
     std::int64_t parent = -1; ///< comes earlier in Character::bones, or -1
@@ -67,23 +76,29 @@ struct Bone {
     std::array<double, 4> rotation{0, 0, 0, 1}; ///< x, y, z, w
 };
 
-/// A joint of a skin: a simulation node.
+/// A joint of a skin, or what carries a mesh without a skin: a simulation node.
 struct Joint {
     std::uint32_t bone;     ///< index into Character::bones
-    AffineMap inverse_bind; ///< from the mesh at rest to the bone
+    AffineMap inverse_bind; ///< from the mesh at rest to the bone; of a mesh without a skin the identity
 };
 
 /// Whether all of a file's surface is wanted, or only what is modelled.
 enum class Coverage { whole, partial };
+/// Whether morph targets are read, or are not modelled where their weights are not 0.
+enum class Morphs { missing, read };
 
-/// A skinned character: every triangle of every mesh that a skin deforms and the file's default scene draws. Vertices
-/// with equal position and weights are one vertex (glTF splits them where normals or texture coordinates differ), and
-/// a mesh that is drawn twice by the same skin, which puts it at the same place, is there once.
+/// A character: every triangle that the file's default scene draws, deformed by skins or carried by nodes. Vertices
+/// with equal position, weights and displacements are one vertex (glTF splits them where normals or texture coordinates
+/// differ), and a mesh that is drawn twice by the same skin, which puts it at the same place, is there once.
 struct Character {
     std::string file;          ///< for messages
     TriangleMesh mesh;         ///< in bind pose
     Influences influences;     ///< simulation node j is joints[j]
-    std::vector<Joint> joints; ///< of all skins
+    std::vector<Joint> joints; ///< of all skins, then one for each mesh without a skin
+    std::size_t skins = 0, carried = 0; ///< of which it is made: skins, and meshes without one. Each has a rest space
+                                        ///< of its own
+    std::vector<MorphTarget> targets;   ///< with Morphs::read
+    std::vector<double> target_weights; ///< of the file, where no animation sets them
     std::vector<Bone> bones;   ///< joints and what moves them; parents come first
     /// One of the file's.
     struct Animation {
@@ -91,6 +106,7 @@ struct Character {
         double first_s = 0;               ///< the first key of all of its channels, whatever they move
         double last_s = 0;                ///< the last one
         std::vector<Curve> curves;        ///< those that move bones
+        std::vector<WeightCurve> morphs;  ///< with Morphs::read
         std::vector<std::string> missing; ///< what moves the surface in it and is not modelled
         std::vector<std::string> notes;   ///< what was changed, for the load report
         std::string fault; ///< why it cannot be sampled, as the message of an InputError; empty where it can
@@ -102,15 +118,24 @@ struct Character {
     std::vector<std::string> notes; ///< what was left out since it bounds nothing, for the load report
 };
 
-/// Reads .gltf (with its .bin files) or .glb. What is read is listed, as is what cannot move a vertex (materials,
+/// Reads .gltf (with its .bin files), .glb or .vrm. What is read is listed, as is what cannot move a vertex (materials,
 /// textures, cameras, lights, names, extras, ...); anything else that touches the surface is missing. `whole`: where
 /// something is missing this throws, naming it, and animations with something missing have that as their fault.
 /// `partial`: the rest is read. Throws InputError; memory is bounded by the files' sizes.
-Character read_gltf(const std::filesystem::path& path, Coverage coverage = Coverage::whole);
+Character read_gltf(const std::filesystem::path& path, Coverage coverage = Coverage::whole,
+                    Morphs morphs = Morphs::missing);
+
+/// True for .glb, .gltf and .vrm, in any case.
+bool is_character_file(const std::filesystem::path& path);
+
+/// The character's surface, with its weights normalised (to_dyadic). Where its parts have rest spaces of their own its
+/// layout is the pose of the file.
+DeformableSurface surface_of(const Character& character, WeightReport* report = nullptr);
 
 /// Joint matrices (joint world × inverse bind) at evenly spaced times from the first key to the last, both included,
 /// as near to `fps` per second as that allows. The clip has a copy of what it needs. Throws InputError for a fault of
-/// the animation, and for 10¹² frames or more; frames that overflow throw when they are made.
+/// the animation, for morph targets that were read and have weights that are not 0, and for 10¹² frames or more; frames
+/// that overflow throw when they are made.
 Clip sample(const Character& character, const Character::Animation& animation, double fps);
 
 /// The rest pose as a clip of one frame.

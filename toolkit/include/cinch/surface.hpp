@@ -115,6 +115,16 @@ Weights to_dyadic(const Influences& influences, WeightReport* report = nullptr);
 struct DeformableSurface {
     TriangleMesh mesh; ///< at rest
     Weights weights;   ///< of each of its vertices
+    std::vector<Vec3>
+        layout{}; ///< where its vertices stand when triangles are grouped, for parts with rest spaces of their own;
+                  ///< empty: at rest. No bound depends on it, only how tight they are
+};
+
+/// Displacements d_i of some rest vertices. With weights a, a surface's vertices at rest are v⁰ + Σ_i a_i d_i, before
+/// its simulation nodes move them.
+struct MorphTarget {
+    std::vector<std::uint32_t> vertex; ///< ascending; all others stay
+    std::vector<Vec3> displacement;    ///< parallel to `vertex`; finite
 };
 
 /// Bad input. what() is one line: file, place and reason, ready to print.

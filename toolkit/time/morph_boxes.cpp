@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "toolkit/time/morph_boxes.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "toolkit/bounds/rounding.hpp"
+#include "toolkit/time/interval_refit.hpp"
+
+namespace cinch {
+namespace {
+
+struct Range {
+    Vec3 low = Vec3::Constant(infinite), high = Vec3::Constant(-infinite);
+    std::size_t displaced = 0; // vertices
+};
+
+} // namespace
+
+MorphBoxes::MorphBoxes(const Bvh& bvh, const DeformableSurface& surface, std::span<const MorphTarget> targets)
+    : bvh_(bvh)
+{
+    struct Displacement {
+        std::uint32_t target;
+        Vec3 by;
+    };
+    std::vector<std::vector<Displacement>> of(surface.mesh.vertices.size());
+    for (std::uint32_t i = 0; i < targets.size(); ++i)
+        for (std::size_t n = 0; n < targets[i].vertex.size(); ++n)
+            of[targets[i].vertex[n]].push_back({i, targets[i].displacement[n]});
+    std::vector<Range> range(targets.size());
+    std::vector<std::uint32_t> met;
+    for (const Bv& bv : bvh.bvs) {
+        const std::vector<std::uint32_t> vertices = vertices_of(surface, bvh, bv);
+        met.clear();
+        for (const std::uint32_t v : vertices)
+            for (const Displacement& d : of[v]) {
+                Range& r = range[d.target];
+                if (r.displaced++ == 0)
+                    met.push_back(d.target);
+                r.low = r.low.cwiseMin(d.by);
+                r.high = r.high.cwiseMax(d.by);
+            }
+        std::sort(met.begin(), met.end());
+        for (const std::uint32_t i : met) {
+            Range& r = range[i];
+            if (r.displaced < vertices.size()) { // the others stay
+                r.low = r.low.cwiseMin(Vec3::Zero());
+                r.high = r.high.cwiseMax(Vec3::Zero());
+            }
+            const Vec3 centre = 0.5 * r.low + 0.5 * r.high;
+            Vec3 half;
+            for (int c = 0; c < 3; ++c)
+                half[c] = succ(std::max(r.high[c] - centre[c], centre[c] - r.low[c]));
+            target_.push_back(i);
+            centre_.push_back(centre);
+            half_.push_back(half);
+            r = {};
+        }
+        row_.push_back(static_cast<std::uint32_t>(target_.size()));
+    }
+}
+
+void MorphBoxes::add(std::span<const Term> terms, int kdop, std::span<double> supports) const
+{
+    const auto k = static_cast<std::size_t>(kdop);
+    const auto axes = axes_of(kdop);
+    std::vector<double> reach; // of each simulation node of a BV along each direction
+    for (std::size_t i = 0; i < bvh_.bvs.size(); ++i) {
+        if (row_[i] == row_[i + 1])
+            continue;
+        const RestBv bv = bvh_.rest(i);
+        reach.assign(bv.node.size() * k, 0.0);
+        bool any = false;
+        for (const Term& term : terms) {
+            Vec3 centre = Vec3::Zero(), half = Vec3::Zero();
+            for (std::uint32_t n = row_[i]; n < row_[i + 1]; ++n) {
+                const double a = term.weight[target_[n]];
+                if (a == 0)
+                    continue;
+                centre += a * centre_[n];
+                half += std::abs(a) * half_[n];
+                any = true;
+            }
+            if (half.isZero(0) && centre.isZero(0))
+                continue;
+            for (std::size_t j = 0; j < bv.node.size(); ++j) {
+                const auto& m = term.maps[bv.node[j]].m;
+                for (std::size_t a = 0; a < k / 2; ++a) {
+                    double along = 0, around = 0;
+                    for (int c = 0; c < 3; ++c) {
+                        const double g = axes[a][0] * m[0][c] + axes[a][1] * m[1][c] + axes[a][2] * m[2][c];
+                        along += g * centre[c];
+                        around += std::abs(g) * half[c];
+                    }
+                    reach[j * k + 2 * a] += around + along;
+                    reach[j * k + 2 * a + 1] += around - along;
+                }
+            }
+        }
+        for (std::size_t d = 0; any && d < k; ++d) {
+            double least = infinite;
+            bool finite = true;
+            for (std::size_t j = 0; j < bv.node.size(); ++j) {
+                const double c = reach[j * k + d];
+                finite = finite && std::isfinite(c);
+                least = std::min(least, c);
+            }
+            const double mean = // weights sum to 1
+                finite ? least + greatest_mean(bv, [&](std::size_t j) { return reach[j * k + d] - least; }) : infinite;
+            supports[i * k + d] = succ(supports[i * k + d] + mean);
+        }
+    }
+}
+
+} // namespace cinch

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "cinch/bvh.hpp"
+
+namespace cinch {
+
+/// Boxes of the displacements of every BV's vertices, one per morph target that displaces any of them.
+class MorphBoxes {
+public:
+    /// Of each of the surface's BVs.
+    MorphBoxes(const Bvh& bvh, const DeformableSurface& surface, std::span<const MorphTarget> targets);
+
+    /// Displacements with weights a, pushed through linear parts of maps: z = Σ_i a_i A_j d_i at a vertex of node j.
+    struct Term {
+        std::span<const double> weight;  ///< of every target
+        std::span<const AffineMap> maps; ///< of every simulation node
+    };
+    /// Adds to every support of k per BV what the sum of the terms reaches along its direction, over the boxes and W':
+    /// the greatest Σ_j w_j c_j, c_j = Σ_terms (g·c + |g|·h), g = A_jᵀγ, c and h the centre Σ a_i c_i and the half
+    /// extents Σ |a_i| h_i of the BV's box. Rounds to nearest but for the last sum: of m targets and n simulation nodes
+    /// every c_j and the mean are off by at most (m + n + 16) u ‖γ‖ times 4 Σ_terms ‖A_j‖ Σ_i |a_i| max ‖d_i‖.
+    void add(std::span<const Term> terms, int kdop, std::span<double> supports) const;
+
+    /// How many targets displace a BV.
+    std::size_t count(std::size_t bv) const { return row_[bv + 1] - row_[bv]; }
+
+private:
+    const Bvh& bvh_;
+    std::vector<std::uint32_t> row_{0};  // a BV's entries
+    std::vector<std::uint32_t> target_;  // of each entry
+    std::vector<Vec3> centre_, half_;
+};
+
+} // namespace cinch
