@@ -137,11 +137,10 @@ TEST_CASE("malformed characters are refused in one line")
         d.root["nodes"].push_back({{"children", {1}}});
         refused(d, "two parents");
     }
-    SECTION("no skin")
+    SECTION("no mesh")
     {
-        d.root.erase("skins");
-        d.root["nodes"][0].erase("skin");
-        refused(d, "no skin");
+        d.root["nodes"][0].erase("mesh");
+        refused(d, "draws no mesh");
     }
     SECTION("short bind matrices")
     {

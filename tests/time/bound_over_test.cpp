@@ -106,7 +106,34 @@ struct Subject {
     Bvh bvh;
 };
 
-// A chain of bones, the surface a strip of triangles along them.
+// One target or a few, of some vertices, each with weights that a curve moves or that stand still.
+void add_targets(Random& random, std::size_t vertices, Character& c)
+{
+    const std::size_t count = 1 + one_of(random, 3);
+    for (std::size_t i = 0; i < count; ++i) {
+        MorphTarget& target = c.targets.emplace_back();
+        c.target_weights.push_back(one_of(random, 2) ? stored(between(random, -1, 1)) : 0);
+        for (std::uint32_t v = 0; v < vertices; ++v)
+            if (one_of(random, 3) > 0) {
+                target.vertex.push_back(v);
+                target.displacement.emplace_back(stored(between(random, -1, 1)), stored(between(random, -1, 1)),
+                                                 stored(between(random, -1, 1)));
+            }
+    }
+    if (one_of(random, 4) == 0)
+        return;
+    const std::size_t first = one_of(random, count);
+    // Four numbers of a curve are as many weights as there are.
+    const Curve from = random_curve(random, 0, Curve::Target::translation);
+    WeightCurve curve{static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(count - first), from.interpolation,
+                      from.time_s, {}};
+    for (const auto& value : from.value)
+        for (std::size_t n = 0; n < curve.count; ++n)
+            curve.value.push_back(value[n]);
+    c.rest.morphs.push_back(curve);
+}
+
+// A chain of bones, the surface a strip of triangles along them; every other one with morph targets.
 Subject random_subject(Random& random)
 {
     Subject out;
@@ -147,6 +174,8 @@ Subject random_subject(Random& random)
         if (v >= 2)
             out.surface.mesh.triangles.push_back({v - 2, v - 1, v});
     }
+    if (one_of(random, 2) == 0)
+        add_targets(random, out.surface.mesh.vertices.size(), c);
     out.surface.weights = to_dyadic(influences);
     out.bvh = build_bvh(out.surface, 2);
     return out;
@@ -155,12 +184,25 @@ Subject random_subject(Random& random)
 exact::TimeVerdict verdict_on(const Subject& subject, const TimedMotion& motion, const RefitOptions& options,
                               double tolerance)
 {
-    IntervalRefitter refit(subject.bvh, subject.surface, options);
+    IntervalRefitter refit(subject.bvh, subject.surface, options, subject.character.targets);
     std::vector<double> supports(subject.bvh.bvs.size() * static_cast<std::size_t>(options.kdop));
     bound_over(refit, motion, motion.first_s(), motion.last_s(), tolerance, supports);
     const exact::ClipEnclosure clip(subject.character, subject.character.rest);
-    return exact::TimeChecker(subject.surface, subject.bvh, clip, options.kdop, [] {})(motion.first_s(),
-                                                                                       motion.last_s(), supports);
+    const exact::TimeChecker check(subject.surface, subject.bvh, clip, subject.character.targets, options.kdop, [] {});
+    return check(motion.first_s(), motion.last_s(), supports);
+}
+
+// The rest vertices at a time, morph targets added.
+std::vector<Vec3> rest_at(const Subject& subject, const TimedMotion& motion, double t)
+{
+    std::vector<Vec3> out = subject.surface.mesh.vertices;
+    const std::vector<double> weights = motion.weights ? motion.weights(t) : std::vector<double>();
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+        const MorphTarget& target = subject.character.targets[i];
+        for (std::size_t n = 0; n < target.vertex.size(); ++n)
+            out[target.vertex[n]] += weights[i] * target.displacement[n];
+    }
+    return out;
 }
 
 } // namespace
@@ -191,6 +233,9 @@ TEST_CASE("bounds over time hold at all times, and whatever is dropped from them
             TimedMotion wrong = motion;
             wrong.over = [&motion, kind](double a, double b) {
                 MotionInterval out = motion.over(a, b);
+                if (kind == 0)
+                    for (auto& derivative : out.morph.at)
+                        std::fill(derivative.begin(), derivative.end(), 0.0);
                 for (std::size_t j = 0; j < out.limits.size(); ++j) {
                     auto& limit = out.limits[j];
                     if (kind == 0) { // no bump at all
@@ -231,17 +276,20 @@ TEST_CASE("a support that a vertex passes at one moment is refuted there")
             continue;
         }
         // The farthest place of the root along one direction among many moments, and a support barely below it.
-        Refitter truth(subject.bvh, subject.surface, {Method::vertices, 6, Rounding::plain});
         const std::size_t bvs = subject.bvh.bvs.size(), d = i % 6;
-        std::vector<double> now(6 * bvs), supports(6 * bvs, HUGE_VAL);
+        std::vector<double> supports(6 * bvs, HUGE_VAL);
+        std::vector<Vec3> place(subject.surface.mesh.vertices.size());
         double most = -HUGE_VAL, size = 0;
         for (int n = 1; n < 500; ++n) {
-            truth(motion.at(motion.first_s() + (motion.last_s() - motion.first_s()) * n / 500), now);
-            most = std::max(most, now[d]);
-            size = std::max({size, std::abs(now[d]), std::abs(now[d ^ 1])});
+            const double t = motion.first_s() + (motion.last_s() - motion.first_s()) * n / 500;
+            evaluate(rest_at(subject, motion, t), subject.surface.weights, motion.at(t), place);
+            for (const Vec3& x : place) {
+                most = std::max(most, (d % 2 ? -1 : 1) * x[static_cast<int>(d / 2)]);
+                size = std::max(size, std::abs(x[static_cast<int>(d / 2)]));
+            }
         }
         supports[d] = most - 1e-9 * size;
-        const exact::TimeChecker check(subject.surface, subject.bvh, *clip, 6, [] {});
+        const exact::TimeChecker check(subject.surface, subject.bvh, *clip, subject.character.targets, 6, [] {});
         const exact::TimeVerdict verdict = check(motion.first_s(), motion.last_s(), supports);
         ++cases;
         refuted += verdict.violated == 1 && verdict.worst && verdict.worst->at_least > supports[d];
@@ -251,7 +299,7 @@ TEST_CASE("a support that a vertex passes at one moment is refuted there")
         if (verdict.worst) {
             double reach = -HUGE_VAL; // then, or just before, where a curve jumps then
             for (const double t : {verdict.worst->time_s, std::nextafter(verdict.worst->time_s, -HUGE_VAL)}) {
-                const Vec3 place = evaluate_vertex(subject.surface.mesh.vertices[verdict.worst->vertex],
+                const Vec3 place = evaluate_vertex(rest_at(subject, motion, t)[verdict.worst->vertex],
                                                    subject.surface.weights.of(verdict.worst->vertex), motion.at(t));
                 reach = std::max(reach, (d % 2 ? -1 : 1) * place[static_cast<int>(d / 2)]);
             }
@@ -272,15 +320,17 @@ TEST_CASE("limits of an interval hold divided differences of the places, and not
             const double a = motion.keys[k - 1], b = motion.keys[k], length = b - a, step = length / 32;
             const MotionInterval interval = motion.over(a, b);
             std::vector<std::vector<AffineMap>> maps;
-            for (int n = 1; n < 32; ++n) // inside, where jumps at keys do not count
+            std::vector<std::vector<Vec3>> rest;
+            for (int n = 1; n < 32; ++n) { // inside, where jumps at keys do not count
                 maps.push_back(motion.at(a + n * step));
+                rest.push_back(rest_at(subject, motion, a + n * step));
+            }
             for (std::size_t v = 0; v < subject.surface.mesh.vertices.size(); ++v)
                 for (const std::uint32_t j : subject.surface.weights.of(v).node) {
-                    const Vec3& y = subject.surface.mesh.vertices[v];
                     std::vector<Vec3> x;
                     double size = 0;
-                    for (const auto& map : maps) {
-                        x.push_back(apply(map[j], y));
+                    for (std::size_t n = 0; n < maps.size(); ++n) {
+                        x.push_back(apply(maps[n][j], rest[n][v]));
                         size = std::max(size, x.back().norm());
                     }
                     // D ‖x′‖, (D²/8) ‖x″‖ and (D³/32) ‖x‴‖, each at some time between.

@@ -245,7 +245,7 @@ void read(GltfDocument& document, Morphs with_morphs, Missing& missing, Characte
     if (hidden)
         out.notes.push_back(std::to_string(hidden) + (hidden == 1 ? " hidden mesh" : " hidden meshes") + " left out");
     if (drawn.empty())
-        throw InputError::in_file(out.file, "draws no mesh in its default scene");
+        throw InputError::in_file(out.file, "draws no mesh that a skin deforms or a node carries in its default scene");
     for (const std::size_t skin : skins)
         skeleton.first_joint(skin);
     SurfaceReader surface(document, skeleton, with_morphs, missing, out);
