@@ -205,6 +205,14 @@ std::vector<Vec3> rest_at(const Subject& subject, const TimedMotion& motion, dou
     return out;
 }
 
+Vec3 displacement_of(const MorphTarget& target, std::size_t vertex)
+{
+    const auto found = std::find(target.vertex.begin(), target.vertex.end(), vertex);
+    return found == target.vertex.end() ? Vec3::Zero() : target.displacement[found - target.vertex.begin()];
+}
+Vec3 shift_of(const AffineMap& map) { return {map.m[0][3], map.m[1][3], map.m[2][3]}; }
+Vec3 turned(const AffineMap& map, const Vec3& x) { return apply(map, x) - shift_of(map); }
+
 } // namespace
 
 TEST_CASE("bounds over time hold at all times, and whatever is dropped from them is found")
@@ -333,8 +341,18 @@ TEST_CASE("limits of an interval hold divided differences of the places, and not
                         x.push_back(apply(maps[n][j], rest[n][v]));
                         size = std::max(size, x.back().norm());
                     }
-                    // D ‖x′‖, (D²/8) ‖x″‖ and (D³/32) ‖x‴‖, each at some time between.
                     const MotionInterval::Limits& limit = interval.limits[j];
+                    // −(D²/8) x″(m), and the same at some time within a 32th of the interval, where it differs by a
+                    // 32th of (D³/8) ‖x‴‖ at most.
+                    Vec3 bend = turned(interval.bend[j], rest[15][v]) + shift_of(interval.bend[j]);
+                    for (std::size_t i_ = 0; i_ < interval.morph.at[1].size(); ++i_) {
+                        const Vec3 d = displacement_of(subject.character.targets[i_], v);
+                        bend += interval.morph.at[1][i_] * turned(interval.morph.slope[j], d) +
+                                interval.morph.at[2][i_] * turned(interval.morph.still[j], d);
+                    }
+                    const Vec3 second = (x[16] - 2 * x[15] + x[14]) * (-32 * 32 / 8.0);
+                    CHECK((second - bend).norm() <= limit.remainder / 8 + limit.bend_error + 1e-11 * size);
+                    // D ‖x′‖, (D²/8) ‖x″‖ and (D³/32) ‖x‴‖, each at some time between.
                     const double most[3] = {limit.path, limit.bump, limit.remainder}, part[3] = {1, 1.0 / 8, 1.0 / 32};
                     double times = 1;
                     for (std::size_t order = 0; order < 3; ++order) {
@@ -356,6 +374,29 @@ TEST_CASE("limits of an interval hold divided differences of the places, and not
     }
     for (const double share : nearest)
         CHECK(share > 0.9);
+}
+
+TEST_CASE("an interval's bounds do not depend on the intervals before it")
+{
+    Random random(17);
+    for (std::size_t i = 0; i < 20; ++i) {
+        Subject subject = random_subject(random);
+        if (i % 2) // morph targets alone move it
+            subject.character.rest.curves.clear();
+        const TimedMotion motion = character_motion(subject.character, subject.character.rest, subject.surface);
+        const RefitOptions options{.kdop = 6};
+        IntervalRefitter kept(subject.bvh, subject.surface, options, subject.character.targets);
+        const std::vector<double>& keys = motion.keys;
+        std::vector<double> one(subject.bvh.bvs.size() * 6), other(one);
+        for (std::size_t n = 0; n < 12; ++n) {
+            const std::size_t k = 1 + one_of(random, keys.size() - 1);
+            const double middle = keys[k - 1] + (keys[k] - keys[k - 1]) / 2;
+            const MotionInterval interval = n % 2 ? motion.over(keys[k - 1], middle) : motion.over(middle, keys[k]);
+            kept(interval, one);
+            IntervalRefitter(subject.bvh, subject.surface, options, subject.character.targets)(interval, other);
+            CHECK(one == other);
+        }
+    }
 }
 
 TEST_CASE("joint matrices are as near to the exact ones as their errors say, at all times")
