@@ -81,7 +81,7 @@ void TimeVerdict::add(const TimeVerdict& other)
         worst = other.worst;
 }
 
-TimeChecker::TimeChecker(const DeformableSurface& surface, const Bvh& bvh, const ClipEnclosure& clip,
+TimeChecker::TimeChecker(const DeformableSurface& surface, const Bvh& bvh, const MotionEnclosure& clip,
                          std::span<const MorphTarget> targets, int kdop, std::function<void()> poll)
     : surface_(surface), bvh_(bvh), clip_(clip), kdop_(kdop), poll_(std::move(poll))
 {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "cinch/bvh.hpp"
-#include "exact/clip_enclosure.hpp"
+#include "exact/motion_enclosure.hpp"
 
 namespace cinch::exact {
 
@@ -38,7 +38,7 @@ struct TimeVerdict {
 class TimeChecker {
 public:
     /// Surface, BVH and clip must stay as they are, and alive. `targets`: those whose weights the clip has.
-    TimeChecker(const DeformableSurface& surface, const Bvh& bvh, const ClipEnclosure& clip,
+    TimeChecker(const DeformableSurface& surface, const Bvh& bvh, const MotionEnclosure& clip,
                 std::span<const MorphTarget> targets, int kdop, std::function<void()> poll);
 
     TimeVerdict operator()(double a_s, double b_s, std::span<const double> supports) const;
@@ -46,7 +46,7 @@ public:
 private:
     const DeformableSurface& surface_;
     const Bvh& bvh_;
-    const ClipEnclosure& clip_;
+    const MotionEnclosure& clip_;
     int kdop_;
     std::function<void()> poll_;
     std::vector<std::uint32_t> vertices_; ///< of any triangle

@@ -90,7 +90,7 @@ void add_fuzz(CLI::App& app, Run& run)
         ->check(CLI::NonNegativeNumber)
         ->option_text("N");
     option("--seed", o.seed, "case i of a seed is always the same [0]")->option_text("N");
-    option("--family", o.family, fmt::format("only this family: {} [all in turn]", fmt::join(fuzz_families(), ", ")))
+    option("--family", o.family, fmt::format("only this family: {} [all but the last in turn]", fmt::join(fuzz_families(), ", ")))
         ->check(CLI::Validator(
             [](std::string& text) {
                 const auto known = fuzz_families();
@@ -115,12 +115,14 @@ void add_fuzz(CLI::App& app, Run& run)
     add_output(command, o.output, Draws::nothing);
     option("--sabotage", o.defect,
            "for tests: plant a defect: no-rounding, lower-h and small-box must be found, wrong-lambda and sum-order "
-           "must prove harmless; nothing is saved")
+           "must prove harmless; of times no-remainder, half-bump, skip-key and still-morphs must be found; nothing is "
+           "saved")
         ->transform(one_of<Defect>({defects.begin() + 1, defects.end()}))
         ->option_text("KIND");
     command.footer(R"(Examples:
   cinch fuzz --seconds 600                 ten minutes, all families
   cinch fuzz --cases 1000000 --resume s    can be stopped and continued
+  cinch fuzz --family times --seconds 60   clips, bounded for all times
   cinch fuzz --shard 0/4 --seconds 600     one of four machines
   cinch fuzz --cases 1000000000 --out rows --shard slurm   one of a cluster's
 

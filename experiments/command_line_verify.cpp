@@ -11,7 +11,7 @@ void add_verify(CLI::App& app, Run& run)
     const auto options = std::make_shared<VerifyOptions>();
     VerifyOptions& o = *options;
     CLI::App& command = *app.add_subcommand("verify", "prove every bound in exact arithmetic");
-    command.callback([options, &run] { run = [options] { return verify(*options); }; });
+    command.callback([options, &run] { run = [options] { return options->all_times ? verify_all_times(*options) : verify(*options); }; });
     add_input(command, o.input);
     const auto option = options_of(command);
     add_methods(command, o.methods);
@@ -32,7 +32,11 @@ void add_verify(CLI::App& app, Run& run)
                                             {"full", VerifiedUpdate::full},
                                             {"front", VerifiedUpdate::front}}))
         ->option_text("KIND");
-    option("--leaf", o.leaf, "most triangles per leaf [1; 16 with --update]")
+    option("--times", o.all_times,
+           "what is proven: frames (at each of them), or all (at all real times of every clip, or of --clip) [frames]")
+        ->transform(one_of<bool>({{"frames", false}, {"all", true}}))
+        ->option_text("WHICH");
+    option("--leaf", o.leaf, "most triangles per leaf [1; 16 with --update or --times all]")
         ->check(CLI::Range(1, 1000000))
         ->option_text("N");
     option("--threads", o.threads, "threads [all cores]")->check(CLI::Range(1, 1024))->option_text("N");
@@ -67,6 +71,7 @@ void add_verify(CLI::App& app, Run& run)
   cinch verify fish --certificate fish.jsonl.gz
   cinch verify robot.glb --out rows --certificate proof --shard 0/8
   cinch verify santa-ring-3 --update lazy    the bounds that collision reads
+  cinch verify robot.glb --times all         all clips, between frames too
 
 Text form of weights and transforms ('#' starts a comment):
   weights     'V J'; then per vertex 'n j1 w1 ... jn wn': nodes from 0, weights

@@ -39,10 +39,14 @@ struct VerifyOptions {
     std::string vipr;        ///< folder for single bounds as VIPR files; empty: none
     bool volume = false;     ///< exact volume ratios too
     Sabotage sabotage = Sabotage::none;
+    bool all_times = false; ///< of clips, in place of frames
 };
 
 /// Updates BVs in every frame and proves every bound. Returns the exit status: 0 all proven, 1 a check failed, 130
 /// interrupted.
 int verify(const VerifyOptions& options);
+
+/// The same of bounds of whole clips, for all of their times (bake). Throws InputError for options of frames.
+int verify_all_times(const VerifyOptions& options);
 
 } // namespace cinch

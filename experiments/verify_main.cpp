@@ -3,12 +3,18 @@
 #include "cinch/surface.hpp"
 #include "experiments/command_line.hpp"
 #include "experiments/input_scene.hpp"
+#include "experiments/verify.hpp"
 
 namespace cinch {
 
 Inputs load_scene(const InputOptions& options)
 {
     throw InputError(options.input + ": scenes are in the whole program, 'cinch'");
+}
+
+int verify_all_times(const VerifyOptions&)
+{
+    throw InputError("--times all: bounds over time are in the whole program, 'cinch'");
 }
 
 } // namespace cinch

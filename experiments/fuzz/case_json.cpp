@@ -44,6 +44,11 @@ std::vector<double> numbers(const json& array, const std::string& file, const st
 std::string to_json(const FuzzCase& c, const std::string& fault)
 {
     json out{{"family", c.family}, {"n", c.nodes()}, {"fault", fault}};
+    if (c.is_of_times()) {
+        out = {{"family", c.family}, {"fault", fault}, {"drawn", c.drawn},
+               {"kdop", c.kdop}, {"trial", c.trial}, {"passes", c.passes}};
+        return out.dump();
+    }
     if (!c.is_surface()) {
         out["l"] = hex_array(c.space.l);
         out["h"] = hex_array(c.space.h);
@@ -68,7 +73,7 @@ FuzzCase fuzz_case_from_json(const std::string& text, const std::string& file)
     try {
         const json root = json::parse(text);
         out.family = root.value("family", "");
-        if (!root.contains("rest")) {
+        if (!root.contains("rest") && !out.is_of_times()) {
             out.space = parse_case(text, file);
             if (out.space.b.empty())
                 throw InputError::in_file(file, "field b has no row");
@@ -81,10 +86,16 @@ FuzzCase fuzz_case_from_json(const std::string& text, const std::string& file)
                                                             value.dump(), least, most));
             return value.get<std::uint64_t>();
         };
-        const std::size_t n = whole("n", 1, 65535);
         out.kdop = static_cast<int>(whole("kdop", 6, 26));
         if (!is_kdop(out.kdop))
             throw InputError::in_file(file, fmt::format("field kdop: {} is none of {}", out.kdop, kdop_names()));
+        if (out.is_of_times()) {
+            out.drawn = whole("drawn", 0, ~std::uint64_t{0});
+            out.trial = static_cast<std::uint32_t>(whole("trial", 0, 5));
+            out.passes = static_cast<int>(whole("passes", 0, 1));
+            return out;
+        }
+        const std::size_t n = whole("n", 1, 65535);
         out.trial = root.contains("trial") ? static_cast<std::uint32_t>(whole("trial", 0, surface_trials)) : 0;
         out.passes = root.contains("passes") ? static_cast<int>(whole("passes", 1, 100)) : 1;
         for (const json& p : root.at("rest")) {

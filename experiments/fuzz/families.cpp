@@ -4,6 +4,7 @@
 #include <limits>
 #include <random>
 
+#include "cinch/bounds.hpp"
 #include "experiments/fuzz/fuzz_case.hpp"
 #include "toolkit/deform/dyadic.hpp"
 #include "toolkit/deform/sample_nodes.hpp"
@@ -294,6 +295,14 @@ void scene_weights(Random& r, FuzzCase& c)
     }
 }
 
+void times(Random& r, FuzzCase& c)
+{
+    c.drawn = r.bits();
+    c.trial = static_cast<std::uint32_t>(r.below(6));
+    c.passes = static_cast<int>(r.below(2));
+    c.kdop = kdops[r.below(kdops.size())];
+}
+
 struct Family {
     std::string_view name;
     Draw draw;
@@ -321,7 +330,9 @@ constexpr Family families[] = {
     {"surface-huge", surface_huge},
     {"surface-integer", surface_integer},
     {"scene-weights", scene_weights},
+    {"times", times},
 };
+constexpr std::size_t in_turn = std::size(families) - 1; // all but the last
 
 } // namespace
 
@@ -335,7 +346,7 @@ std::vector<std::string_view> fuzz_families()
 
 FuzzCase draw_case(std::uint64_t seed, std::uint64_t index, std::string_view wanted)
 {
-    const Family* family = &families[index % std::size(families)];
+    const Family* family = &families[index % in_turn];
     for (const Family& f : families)
         if (f.name == wanted)
             family = &f;

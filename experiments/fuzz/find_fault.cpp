@@ -164,6 +164,8 @@ std::string surface_fault(const FuzzCase& problem, Defect defect)
 std::string find_fault(const FuzzCase& problem, Defect defect)
 {
     try {
+        if (problem.is_of_times())
+            return time_fault(problem, defect);
         return problem.is_surface() ? surface_fault(problem, defect) : space_fault(problem.space, defect);
     } catch (const std::exception& error) {
         return std::string("exception: ") + error.what();

@@ -188,6 +188,9 @@ private:
 
 int fuzz(const FuzzOptions& options)
 {
+    if (options.defect != Defect::none && is_of_times(options.defect) != (options.family == "times"))
+        throw InputError(fmt::format("--sabotage {} {} --family times", name_of(options.defect),
+                                     is_of_times(options.defect) ? "needs" : "is not for"));
     if (options.seconds && !(std::isfinite(*options.seconds) && *options.seconds >= 0)) // NaN is in every range
         throw InputError(fmt::format("--seconds {}: expected seconds >= 0", *options.seconds));
     if (!options.shards.folder.empty())

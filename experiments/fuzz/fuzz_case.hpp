@@ -24,14 +24,17 @@ struct FuzzCase {
     int kdop = 6;
     std::uint32_t trial = 0; ///< of a surface case: which methods are tried, 1 to surface_trials; 0 for all
     int passes = 1;          ///< evaluations of the dual function in it
+    std::uint64_t drawn = 0; ///< of a case of times: what draw_time_case makes it from
 
+    bool is_of_times() const { return family == "times"; }
     bool is_surface() const { return !rest.empty(); }
     std::size_t nodes() const { return is_surface() ? maps.size() : space.l.size(); }
 };
 
 inline constexpr std::uint32_t surface_trials = 17;
 
-/// The families that cases are drawn from, by name.
+/// The families that cases are drawn from, by name; the last one, "times", only where it is asked for: its cases take a
+/// hundred times as long.
 std::vector<std::string_view> fuzz_families();
 
 /// Case `index` of a seed: the same whatever else is drawn, on any thread. `family` empty: each in turn.
@@ -45,18 +48,28 @@ enum class Defect {
     lower_h,      ///< one h lowered by 2^-53: must be found
     sum_order,    ///< sums taken backwards: harmless, the error bound holds in any order
     small_box,    ///< the tightest rest box shrunk by one ulp: must be found
+    no_remainder, ///< of bounds over time, as the next ones: chords alone: must be found
+    half_bump,    ///< half of what may rise above them: must be found
+    skip_key,     ///< the end of every interval forgotten: must be found
+    still_morphs, ///< morph targets as at the beginning: must be found
 };
+constexpr bool is_of_times(Defect defect) { return defect >= Defect::no_remainder; }
 
 inline constexpr std::array defects{std::pair{"", Defect::none},
                                     std::pair{"no-rounding", Defect::no_rounding},
                                     std::pair{"wrong-lambda", Defect::wrong_lambda},
                                     std::pair{"lower-h", Defect::lower_h},
                                     std::pair{"sum-order", Defect::sum_order},
-                                    std::pair{"small-box", Defect::small_box}};
+                                    std::pair{"small-box", Defect::small_box},
+                                    std::pair{"no-remainder", Defect::no_remainder},
+                                    std::pair{"half-bump", Defect::half_bump},
+                                    std::pair{"skip-key", Defect::skip_key},
+                                    std::pair{"still-morphs", Defect::still_morphs}};
 constexpr const char* name_of(Defect defect) { return defects[static_cast<std::size_t>(defect)].first; }
 
 /// Empty if every method of the toolkit holds against the exact side; otherwise what is wrong.
 std::string find_fault(const FuzzCase& problem, Defect defect);
+std::string time_fault(const FuzzCase& problem, Defect defect); ///< the same of a case of times
 
 /// The smallest case found by dropping nodes and vertices and simplifying numbers that still has a fault.
 FuzzCase shrink(FuzzCase problem, Defect defect);

@@ -68,6 +68,8 @@ bool is_valid(const FuzzCase& c)
 
 FuzzCase shrink(FuzzCase problem, Defect defect)
 {
+    if (problem.is_of_times())
+        return problem; // it is as small as they are drawn
     auto accept = [&](FuzzCase smaller) {
         if (interrupted() || !is_valid(smaller) || find_fault(smaller, defect).empty())
             return false;

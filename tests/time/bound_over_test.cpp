@@ -6,7 +6,9 @@
 
 #include <catch2/catch.hpp>
 
+#include "exact/clip_enclosure.hpp"
 #include "exact/time_check.hpp"
+#include "experiments/fuzz/time_case.hpp"
 #include "tests/support.hpp"
 #include "toolkit/time/bound_over.hpp"
 #include "toolkit/time/character_motion.hpp"
@@ -26,162 +28,7 @@ std::size_t one_of(Random& random, std::size_t count)
     return std::uniform_int_distribution<std::size_t>(0, count - 1)(random);
 }
 
-// As files have them: floats.
-double stored(double x) { return static_cast<double>(static_cast<float>(x)); }
-
-std::array<double, 4> quaternion(Random& random)
-{
-    std::normal_distribution<double> normal;
-    std::array<double, 4> q;
-    double square = 0;
-    for (double& x : q) {
-        x = normal(random);
-        square += x * x;
-    }
-    for (double& x : q)
-        x = stored(x / std::sqrt(square));
-    return q;
-}
-
-// Keys as files have them, and the awkward ones: equal, of the other sign, nearly the same, half a turn away.
-std::array<double, 4> next_key(Random& random, const std::array<double, 4>& q)
-{
-    std::array<double, 4> out = q;
-    switch (one_of(random, 6)) {
-    case 0:
-        return out;
-    case 1:
-        for (double& x : out)
-            x = -x;
-        return out;
-    case 2:
-        for (double& x : out)
-            x = stored(x + between(random, -1e-6, 1e-6));
-        return out;
-    case 3: // orthogonal but for a little: nearly half a turn
-        return {stored(-q[1] + 1e-3), q[0], stored(-q[3]), q[2]};
-    default:
-        return quaternion(random);
-    }
-}
-
-Curve random_curve(Random& random, std::uint32_t bone, Curve::Target target)
-{
-    Curve curve;
-    curve.bone = bone;
-    curve.target = target;
-    curve.interpolation = std::array{Curve::Interpolation::linear, Curve::Interpolation::linear,
-                                     Curve::Interpolation::cubic_spline, Curve::Interpolation::step}[one_of(random, 4)];
-    const std::size_t keys = 1 + one_of(random, 4);
-    double t = stored(between(random, -0.5, 0.5));
-    std::array<double, 4> value = quaternion(random);
-    for (std::size_t k = 0; k < keys; ++k) {
-        curve.time_s.push_back(t);
-        t = stored(t + between(random, 0.01, 1));
-        auto tangent = [&] {
-            const double size = one_of(random, 8) == 0 ? 20 : 1;
-            return std::array{stored(between(random, -size, size)), stored(between(random, -size, size)),
-                              stored(between(random, -size, size)), stored(between(random, -size, size))};
-        };
-        if (target == Curve::Target::translation)
-            value = {stored(between(random, -2, 2)), stored(between(random, -2, 2)), stored(between(random, -2, 2)), 0};
-        else if (target == Curve::Target::scale)
-            value = {stored(between(random, 0.2, 2)), stored(between(random, 0.2, 2)), stored(between(random, 0.2, 2)),
-                     0};
-        else
-            value = next_key(random, value);
-        const bool cubic = curve.interpolation == Curve::Interpolation::cubic_spline;
-        if (cubic)
-            curve.value.push_back(tangent());
-        curve.value.push_back(value);
-        if (cubic)
-            curve.value.push_back(tangent());
-    }
-    return curve;
-}
-
-struct Subject {
-    Character character;
-    DeformableSurface surface;
-    Bvh bvh;
-};
-
-// One target or a few, of some vertices, each with weights that a curve moves or that stand still.
-void add_targets(Random& random, std::size_t vertices, Character& c)
-{
-    const std::size_t count = 1 + one_of(random, 3);
-    for (std::size_t i = 0; i < count; ++i) {
-        MorphTarget& target = c.targets.emplace_back();
-        c.target_weights.push_back(one_of(random, 2) ? stored(between(random, -1, 1)) : 0);
-        for (std::uint32_t v = 0; v < vertices; ++v)
-            if (one_of(random, 3) > 0) {
-                target.vertex.push_back(v);
-                target.displacement.emplace_back(stored(between(random, -1, 1)), stored(between(random, -1, 1)),
-                                                 stored(between(random, -1, 1)));
-            }
-    }
-    if (one_of(random, 4) == 0)
-        return;
-    const std::size_t first = one_of(random, count);
-    // Four numbers of a curve are as many weights as there are.
-    const Curve from = random_curve(random, 0, Curve::Target::translation);
-    WeightCurve curve{static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(count - first), from.interpolation,
-                      from.time_s, {}};
-    for (const auto& value : from.value)
-        for (std::size_t n = 0; n < curve.count; ++n)
-            curve.value.push_back(value[n]);
-    c.rest.morphs.push_back(curve);
-}
-
-// A chain of bones, the surface a strip of triangles along them; every other one with morph targets.
-Subject random_subject(Random& random)
-{
-    Subject out;
-    Character& c = out.character;
-    const std::uint32_t bones = 1 + static_cast<std::uint32_t>(one_of(random, 4));
-    for (std::uint32_t b = 0; b < bones; ++b) {
-        Bone bone;
-        bone.parent = static_cast<std::int64_t>(b) - 1;
-        bone.translation = {stored(between(random, -1, 1)), 1, 0};
-        bone.rotation = quaternion(random);
-        if (one_of(random, 4) == 0) { // centimetres on metres
-            const double s = b % 2 ? 100 : 0.01;
-            bone.scale = {s, s, s};
-        }
-        c.bones.push_back(bone);
-        AffineMap bind = identity_map;
-        for (auto& row : bind.m)
-            for (double& x : row)
-                x = stored(x + between(random, -0.3, 0.3));
-        c.joints.push_back({b, bind});
-        for (const auto target : {Curve::Target::translation, Curve::Target::rotation, Curve::Target::scale})
-            if (one_of(random, target == Curve::Target::rotation ? 1 : 3) == 0)
-                c.rest.curves.push_back(random_curve(random, b, target));
-    }
-    c.rest.first_s = -0.25;
-    c.rest.last_s = 1.5;
-    Influences influences;
-    influences.node_count = bones;
-    for (std::uint32_t v = 0; v < 18; ++v) {
-        out.surface.mesh.vertices.emplace_back(stored(between(random, -1, 1)), stored(between(random, -1, 1)),
-                                               stored(between(random, -1, 1)));
-        for (std::uint32_t j = 0; j < bones; ++j)
-            if (j == v % bones || one_of(random, 2) == 0) {
-                influences.node.push_back(j);
-                influences.weight.push_back(between(random, 0.1, 1));
-            }
-        influences.row.push_back(static_cast<std::uint32_t>(influences.node.size()));
-        if (v >= 2)
-            out.surface.mesh.triangles.push_back({v - 2, v - 1, v});
-    }
-    if (one_of(random, 2) == 0)
-        add_targets(random, out.surface.mesh.vertices.size(), c);
-    out.surface.weights = to_dyadic(influences);
-    out.bvh = build_bvh(out.surface, 2);
-    return out;
-}
-
-exact::TimeVerdict verdict_on(const Subject& subject, const TimedMotion& motion, const RefitOptions& options,
+exact::TimeVerdict verdict_on(const TimeCase& subject, const TimedMotion& motion, const RefitOptions& options,
                               double tolerance)
 {
     IntervalRefitter refit(subject.bvh, subject.surface, options, subject.character.targets);
@@ -193,7 +40,7 @@ exact::TimeVerdict verdict_on(const Subject& subject, const TimedMotion& motion,
 }
 
 // The rest vertices at a time, morph targets added.
-std::vector<Vec3> rest_at(const Subject& subject, const TimedMotion& motion, double t)
+std::vector<Vec3> rest_at(const TimeCase& subject, const TimedMotion& motion, double t)
 {
     std::vector<Vec3> out = subject.surface.mesh.vertices;
     const std::vector<double> weights = motion.weights ? motion.weights(t) : std::vector<double>();
@@ -220,7 +67,7 @@ TEST_CASE("bounds over time hold at all times, and whatever is dropped from them
     Random random(7);
     std::size_t bounds = 0, undecided = 0, infinite_bounds = 0, dropped[3] = {};
     for (std::size_t i = 0, cases = test::share_of(120); i < cases; ++i) {
-        const Subject subject = random_subject(random);
+        const TimeCase subject = draw_time_case(random());
         const TimedMotion motion = character_motion(subject.character, subject.character.rest, subject.surface);
         const RefitOptions options{.methods = i % 3 == 0 ? Method::local : Method::best,
                                    .kdop = kdops[i % kdops.size()],
@@ -275,7 +122,7 @@ TEST_CASE("a support that a vertex passes at one moment is refuted there")
     Random random(5);
     std::size_t refuted = 0, cases = 0;
     for (std::size_t i = 0, count = test::share_of(60); i < count; ++i) {
-        const Subject subject = random_subject(random);
+        const TimeCase subject = draw_time_case(random());
         const TimedMotion motion = character_motion(subject.character, subject.character.rest, subject.surface);
         std::optional<exact::ClipEnclosure> clip;
         try {
@@ -307,9 +154,9 @@ TEST_CASE("a support that a vertex passes at one moment is refuted there")
         if (verdict.worst) {
             double reach = -HUGE_VAL; // then, or just before, where a curve jumps then
             for (const double t : {verdict.worst->time_s, std::nextafter(verdict.worst->time_s, -HUGE_VAL)}) {
-                const Vec3 place = evaluate_vertex(rest_at(subject, motion, t)[verdict.worst->vertex],
+                const Vec3 then = evaluate_vertex(rest_at(subject, motion, t)[verdict.worst->vertex],
                                                    subject.surface.weights.of(verdict.worst->vertex), motion.at(t));
-                reach = std::max(reach, (d % 2 ? -1 : 1) * place[static_cast<int>(d / 2)]);
+                reach = std::max(reach, (d % 2 ? -1 : 1) * then[static_cast<int>(d / 2)]);
             }
             CHECK(reach >= verdict.worst->at_least - 1e-6 * size);
         }
@@ -322,7 +169,7 @@ TEST_CASE("limits of an interval hold divided differences of the places, and not
     Random random(13);
     double nearest[3] = {};
     for (std::size_t i = 0, cases = test::share_of(200); i < cases; ++i) {
-        const Subject subject = random_subject(random);
+        const TimeCase subject = draw_time_case(random());
         const TimedMotion motion = character_motion(subject.character, subject.character.rest, subject.surface);
         for (std::size_t k = 1; k < motion.keys.size(); ++k) {
             const double a = motion.keys[k - 1], b = motion.keys[k], length = b - a, step = length / 32;
@@ -380,7 +227,7 @@ TEST_CASE("an interval's bounds do not depend on the intervals before it")
 {
     Random random(17);
     for (std::size_t i = 0; i < 20; ++i) {
-        Subject subject = random_subject(random);
+        TimeCase subject = draw_time_case(random());
         if (i % 2) // morph targets alone move it
             subject.character.rest.curves.clear();
         const TimedMotion motion = character_motion(subject.character, subject.character.rest, subject.surface);
@@ -403,7 +250,7 @@ TEST_CASE("joint matrices are as near to the exact ones as their errors say, at 
 {
     Random random(11);
     for (std::size_t i = 0, cases = test::share_of(200); i < cases; ++i) {
-        const Subject subject = random_subject(random);
+        const TimeCase subject = draw_time_case(random());
         const TimedMotion motion = character_motion(subject.character, subject.character.rest, subject.surface);
         std::optional<exact::ClipEnclosure> clip;
         try {

@@ -8,6 +8,9 @@ namespace cinch {
 namespace {
 
 constexpr int most_halvings = 20;
+// And of all pieces together: enough for any motion that halving helps, little where it does not, as where a curve's
+// tangents are so long that rounding hides it.
+constexpr std::size_t spare_intervals = 1000, intervals_per_piece = 8;
 
 struct Piece {
     double first_s, last_s;
@@ -31,6 +34,7 @@ TimeCost bound_over(IntervalRefitter& refit, const TimedMotion& motion, double a
     for (std::size_t i = 1; i < cuts.size(); ++i)
         open.push_back({cuts[i - 1], cuts[i], 0});
     open.push_back({b_s, b_s, 0}); // where a curve may jump to what no interval before it has
+    const std::size_t most_intervals = spare_intervals + intervals_per_piece * open.size();
 
     std::vector<double> instant(supports.size(), -std::numeric_limits<double>::infinity()), bound(supports.size());
     std::fill(supports.begin(), supports.end(), -std::numeric_limits<double>::infinity());
@@ -72,7 +76,7 @@ TimeCost bound_over(IntervalRefitter& refit, const TimedMotion& motion, double a
         open.clear();
         for (const auto& [piece, bounds] : doubtful) {
             const double middle = piece.first_s + (piece.last_s - piece.first_s) / 2;
-            if (piece.halvings < most_halvings && middle > piece.first_s && middle < piece.last_s &&
+            if (piece.halvings < most_halvings && cost.intervals + open.size() < most_intervals && middle > piece.first_s && middle < piece.last_s &&
                 !is_near(bounds, [&](std::size_t d) { return instant[d]; })) {
                 open.push_back({piece.first_s, middle, piece.halvings + 1});
                 open.push_back({middle, piece.last_s, piece.halvings + 1});

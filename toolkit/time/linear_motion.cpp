@@ -39,6 +39,8 @@ struct Frames {
 
     double share(std::size_t i, double t) const
     {
+        if (!(time_s[i + 1] > time_s[i]))
+            return 1; // of two frames at one time the later one
         return std::clamp((t - time_s[i]) / (time_s[i + 1] - time_s[i]), 0.0, 1.0);
     }
 

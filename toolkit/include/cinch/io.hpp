@@ -8,10 +8,13 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "cinch/deform.hpp"
+#include "cinch/refit.hpp"
 
 namespace cinch {
 
@@ -140,5 +143,27 @@ Clip sample(const Character& character, const Character::Animation& animation, d
 
 /// The rest pose as a clip of one frame.
 Clip rest_pose(const Character& character);
+
+/// Bounds every BV of a character for all times of a clip: every curve as the glTF specification interpolates it, morph
+/// targets (Morphs::read) and parts without a skin included. Character, surface (surface_of) and BVH must stay as they
+/// are, and alive.
+class ClipBounder {
+public:
+    /// Throws InputError for a fault of the animation, std::invalid_argument for a k that is none.
+    ClipBounder(const Character& character, const Character::Animation& animation, const DeformableSurface& surface,
+                const Bvh& bvh, const RefitOptions& options = {});
+    ~ClipBounder();
+    /// What was moved from can only be destroyed.
+    ClipBounder(ClipBounder&&) noexcept;
+
+    /// supports[bv·k + d], d as in axes_of(k): at every real time of [t0_s, t1_s], both included, which lie between the
+    /// animation's first_s and last_s. Wider than the bounds at single times of it by at most `tolerance` of a BV's
+    /// greatest half extent. Throws std::invalid_argument for times and sizes that do not fit.
+    void operator()(double t0_s, double t1_s, std::span<double> supports, double tolerance = 0.01);
+
+private:
+    struct Parts;
+    std::unique_ptr<Parts> parts_;
+};
 
 } // namespace cinch

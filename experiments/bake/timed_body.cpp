@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/bake/timed_body.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "exact/clip_enclosure.hpp"
+#include "experiments/report/interrupt.hpp"
+#include "experiments/report/number.hpp"
+#include "experiments/shipped.hpp"
+#include "toolkit/surface/character.hpp"
+#include "toolkit/time/character_motion.hpp"
+
+namespace cinch {
+
+std::vector<TimedBody> load_timed(const InputOptions& options)
+{
+    std::vector<TimedBody> bodies;
+    InputOptions what = options;
+    if (!is_character_file(what.input)) {
+        if (is_scene(what.input)) { // all of its frames, of which a choice is the usual
+            what.first_frame = true;
+            if (what.frames == 0)
+                what.frames = 1'000'000;
+        }
+        for (Input& input : load_inputs(what).bodies) {
+            bodies.emplace_back();
+            TimedBody& body = bodies.back();
+            body.input = std::move(input);
+            body.clips.push_back({linear_motion(body.input.clip, body.input.surface), nullptr});
+        }
+        return bodies;
+    }
+    bodies.emplace_back();
+    TimedBody& body = bodies.back();
+    const auto loaded = std::make_shared<Character>();
+    Character& character = *loaded;
+    body.character = loaded;
+    body.input = load_character_surface(what, character);
+    std::vector<const Character::Animation*> wanted;
+    for (const Character::Animation& animation : character.animations)
+        if (what.clip.empty() || animation.name == what.clip)
+            wanted.push_back(&animation);
+    if (character.animations.empty() && what.clip.empty())
+        wanted.push_back(&character.rest);
+    if (wanted.empty()) {
+        std::string known;
+        for (const Character::Animation& animation : character.animations)
+            known += (known.empty() ? "" : ", ") + animation.name;
+        throw InputError::in_file(what.input, fmt::format("has no clip '{}'; it has {}", what.clip,
+                                                          known.empty() ? "none" : known));
+    }
+    for (const Character::Animation* animation : wanted) {
+        if (!animation->missing.empty()) {
+            if (!options.partial)
+                throw InputError::in_file(what.input, fmt::format("clip '{}' has {}; --clip chooses another, --partial "
+                                                                  "bounds the rest, and every result says so",
+                                                                  animation->name, not_modelled(animation->missing)));
+            for (const std::string& name : animation->missing)
+                if (std::find(body.input.missing.begin(), body.input.missing.end(), name) == body.input.missing.end())
+                    body.input.missing.push_back(name);
+        }
+        body.clips.push_back({character_motion(character, *animation, body.input.surface), animation});
+    }
+    return bodies;
+}
+
+TimedMotion watched(TimedMotion motion, TimeSabotage how)
+{
+    const double first_s = motion.first_s();
+    motion.over = [right = std::move(motion.over), how, first_s](double a, double b) {
+        throw_if_interrupted();
+        MotionInterval out = right(a, b);
+        if (how == TimeSabotage::none)
+            return out;
+        MotionInterval::Morph& morph = out.morph;
+        if (how == TimeSabotage::still_morphs)
+            morph.first = right(first_s, first_s).morph.first;
+        if (how == TimeSabotage::still_morphs || how == TimeSabotage::first_half)
+            morph.last = morph.at[0] = morph.first;
+        if (how != TimeSabotage::half_bump)
+            for (std::size_t k = how == TimeSabotage::no_remainder ? 0 : 1; k < 3; ++k)
+                std::fill(morph.at[k].begin(), morph.at[k].end(), 0.0);
+        if (how == TimeSabotage::still_morphs)
+            return out;
+        for (std::size_t j = 0; j < out.limits.size(); ++j) {
+            MotionInterval::Limits& limit = out.limits[j];
+            if (how == TimeSabotage::no_remainder) {
+                limit = {0, HUGE_VAL, HUGE_VAL, 0, 0};
+                out.bend[j] = {};
+            } else if (how == TimeSabotage::half_bump) {
+                for (auto& row : out.bend[j].m)
+                    for (double& x : row)
+                        x /= 2;
+                for (std::vector<AffineMap>* maps : {&morph.slope, &morph.still})
+                    for (auto& row : (morph.empty() ? out.bend : *maps)[j].m)
+                        for (double& x : row)
+                            x /= morph.empty() ? 1 : 2;
+                limit.remainder /= 2;
+                limit.bump /= 2;
+                limit.path /= 2;
+            } else {
+                out.last[j] = out.first[j];
+                out.bend[j] = {};
+                limit = {};
+            }
+        }
+        return out;
+    };
+    return motion;
+}
+
+exact::TimeVerdict prove(const TimedBody& body, const TimedClip& clip, const Bvh& bvh, int kdop,
+                         std::span<const BakedInterval> intervals)
+{
+    std::unique_ptr<exact::MotionEnclosure> enclosure;
+    if (clip.animation)
+        enclosure = std::make_unique<exact::ClipEnclosure>(*body.character, *clip.animation);
+    else
+        enclosure = std::make_unique<exact::LinearEnclosure>(body.input.clip);
+    const exact::TimeChecker check(body.input.surface, bvh, *enclosure, body.targets(), kdop, throw_if_interrupted);
+    exact::TimeVerdict out;
+    for (const BakedInterval& interval : intervals)
+        out.add(check(interval.first_s, interval.last_s, interval.supports));
+    return out;
+}
+
+std::string verdict_line(const exact::TimeVerdict& verdict)
+{
+    return fmt::format("{} bounds for all times, {} proven, {} violated{}", grouped(verdict.bounds),
+                       grouped(verdict.proven()), grouped(verdict.violated),
+                       verdict.undecided ? ", " + grouped(verdict.undecided) + " undecided" : "");
+}
+
+std::string worst_line(const exact::TimeVerdict& verdict)
+{
+    if (!verdict.worst)
+        return "";
+    const exact::Outside& worst = *verdict.worst;
+    return fmt::format("  vertex {} at {:.17g} s is {:.3g} beyond direction {} of BV {}\n", worst.vertex, worst.time_s,
+                       worst.at_least - worst.bound, worst.direction, worst.bv);
+}
+
+} // namespace cinch

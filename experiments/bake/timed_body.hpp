@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+
+#include "cinch/io.hpp"
+#include "exact/time_check.hpp"
+#include "experiments/bake/bake.hpp"
+#include "experiments/bake/baked_clip.hpp"
+#include "experiments/input.hpp"
+#include "toolkit/time/motion_interval.hpp"
+
+namespace cinch {
+
+/// A clip with what the exact side reads of it.
+struct TimedClip {
+    TimedMotion motion;
+    const Character::Animation* animation = nullptr; ///< none for simulated and text clips
+};
+
+/// A surface with clips as functions of real time.
+struct TimedBody {
+    Input input;
+    std::shared_ptr<const Character> character; ///< none for others
+    std::vector<TimedClip> clips;
+
+    std::span<const MorphTarget> targets() const
+    {
+        return character ? std::span<const MorphTarget>(character->targets) : std::span<const MorphTarget>();
+    }
+};
+
+/// All clips of a character that can be used, or the one that was asked for; of others the frames, interpolated. Throws
+/// InputError, as load_input does.
+std::vector<TimedBody> load_timed(const InputOptions& options);
+
+/// The motion that ends when it is asked to; and says what a wrong formula would say, for tests of the exact side.
+TimedMotion watched(TimedMotion motion, TimeSabotage how);
+
+/// Proves baked bounds of one of a body's clips.
+exact::TimeVerdict prove(const TimedBody& body, const TimedClip& clip, const Bvh& bvh, int kdop,
+                         std::span<const BakedInterval> intervals);
+/// "N bounds for all times, P proven, V violated", with what is undecided; and where the worst vertex is.
+std::string verdict_line(const exact::TimeVerdict& verdict);
+std::string worst_line(const exact::TimeVerdict& verdict);
+
+} // namespace cinch

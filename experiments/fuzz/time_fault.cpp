@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Bounds for all times of a small character against the exact side.
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "exact/clip_enclosure.hpp"
+#include "exact/time_check.hpp"
+#include "experiments/bake/timed_body.hpp"
+#include "experiments/fuzz/fuzz_case.hpp"
+#include "experiments/fuzz/time_case.hpp"
+#include "experiments/report/interrupt.hpp"
+#include "toolkit/time/bound_over.hpp"
+#include "toolkit/time/character_motion.hpp"
+
+namespace cinch {
+namespace {
+
+TimeSabotage sabotage_of(Defect defect)
+{
+    switch (defect) {
+    case Defect::no_remainder:
+        return TimeSabotage::no_remainder;
+    case Defect::half_bump:
+        return TimeSabotage::half_bump;
+    case Defect::skip_key:
+        return TimeSabotage::first_half;
+    case Defect::still_morphs:
+        return TimeSabotage::still_morphs;
+    default:
+        return TimeSabotage::none;
+    }
+}
+
+} // namespace
+
+std::string time_fault(const FuzzCase& problem, Defect defect)
+{
+    const TimeCase drawn = draw_time_case(problem.drawn);
+    const TimedMotion motion =
+        watched(character_motion(drawn.character, drawn.character.rest, drawn.surface), sabotage_of(defect));
+    RefitOptions options;
+    options.methods = std::array{Methods(Method::best), Methods(Method::local), Methods(Method::limited)}[problem.trial % 3];
+    options.kdop = problem.kdop;
+    options.precision = problem.trial % 2 ? Precision::float64 : Precision::float32;
+    IntervalRefitter refit(drawn.bvh, drawn.surface, options, drawn.character.targets);
+    std::vector<double> supports(drawn.bvh.bvs.size() * static_cast<std::size_t>(options.kdop));
+    // Loose on purpose every other time, so that single intervals between keys are what is proven.
+    bound_over(refit, motion, motion.first_s(), motion.last_s(), problem.passes % 2 ? 1e6 : 0.01, supports);
+    std::optional<exact::ClipEnclosure> clip;
+    try {
+        clip.emplace(drawn.character, drawn.character.rest);
+    } catch (const InputError&) { // two keys half a turn apart to the bit
+        return "";
+    }
+    const exact::TimeChecker check(drawn.surface, drawn.bvh, *clip, drawn.character.targets, options.kdop,
+                                   throw_if_interrupted);
+    const exact::TimeVerdict verdict = check(motion.first_s(), motion.last_s(), supports);
+    if (verdict.worst)
+        return fmt::format("vertex {} at {:.17g} s is {:.3g} beyond direction {} of BV {}", verdict.worst->vertex,
+                           verdict.worst->time_s, verdict.worst->at_least - verdict.worst->bound,
+                           verdict.worst->direction, verdict.worst->bv);
+    return verdict.undecided ? fmt::format("{} of {} bounds undecided", verdict.undecided, verdict.bounds) : "";
+}
+
+} // namespace cinch
