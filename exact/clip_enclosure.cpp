@@ -96,7 +96,7 @@ SinCos sin_cos_at(double x)
 }
 SinCos sin_cos(const Interval& x)
 {
-    constexpr double most = 1.5707; // below π/2
+    constexpr double most = 0x1.921fb54442d18p+0; // the greatest double below π/2
     const Interval all(-1, 1);
     if (!(x.inf() >= -0x1p-40 && x.sup() <= 1.5708))
         return {all, all};
