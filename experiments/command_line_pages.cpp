@@ -59,6 +59,11 @@ void add_view(CLI::App& app, Run& run)
         ->delimiter(',')
         ->option_text("NAME,...")
         ->needs(scene);
+    command
+        .add_flag("--swept", o.request.swept,
+                  wrapped("bounds of intervals too, each for all of its times, as 'cinch bake' has them; a character "
+                          "with its morph targets"))
+        ->needs(scene);
     option("--bits", o.request.bits, "of the grid that positions are rounded to [16]; fewer make a smaller page")
         ->check(CLI::Range(8, 16))
         ->option_text("N")
@@ -102,6 +107,7 @@ void add_view(CLI::App& app, Run& run)
   cinch view santa-ring-6 --report ring.html --methods best,eq12,convex
   cinch view fishes --report fishes.html --frames 30 --levels 5 --bits 14
   cinch view robot.glb --report robot.html
+  cinch view robot.glb --clip Robot_Dance --swept --report dance.html
 
 Bounds are rounded outward to the grid of the vertices, so that what is drawn
 of a bound contains what is drawn of the surface.

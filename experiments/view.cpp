@@ -39,7 +39,7 @@ int view(const ViewOptions& options)
         for (const ViewRequest& request : wanted) {
             throw_if_interrupted();
             Json view = make_view(request);
-            const std::size_t done = view["bounds"].size(), methods = request.methods.size(),
+            const std::size_t done = view["bounds"].size(), methods = view["methods"].get<std::size_t>(),
                               frames = view["time_s"].size();
             if (done < methods)
                 view["text"] = fmt::format("{} ({})", view["text"].get<std::string>(),

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cinch/environment.hpp"
-#include "experiments/bake/timed_body.hpp"
+#include "experiments/bake/prove.hpp"
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/number.hpp"
 #include "experiments/report/progress.hpp"

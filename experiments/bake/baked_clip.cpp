@@ -48,12 +48,8 @@ public:
     void operator()(const TimedMotion& motion, double t, std::vector<double>& supports)
     {
         std::vector<Vec3> rest = surface_.mesh.vertices;
-        if (motion.weights) {
-            const std::vector<double> weights = motion.weights(t);
-            for (std::size_t i = 0; i < targets_.size(); ++i)
-                for (std::size_t n = 0; n < targets_[i].vertex.size(); ++n)
-                    rest[targets_[i].vertex[n]] += weights[i] * targets_[i].displacement[n];
-        }
+        if (motion.weights)
+            displace(targets_, motion.weights(t), rest);
         evaluate(rest, surface_.weights, motion.at(t), place_);
         const std::size_t k = 2 * axes_.size();
         std::fill(supports.begin(), supports.end(), -std::numeric_limits<double>::infinity());
@@ -188,6 +184,13 @@ BakedFigures figures_of(const DeformableSurface& surface, const Bvh& bvh, std::s
         }
     out.leaves = leaves / leaf_count;
     return out;
+}
+
+void displace(std::span<const MorphTarget> targets, std::span<const double> weights, std::vector<Vec3>& vertices)
+{
+    for (std::size_t i = 0; i < targets.size(); ++i)
+        for (std::size_t n = 0; n < targets[i].vertex.size(); ++n)
+            vertices[targets[i].vertex[n]] += weights[i] * targets[i].displacement[n];
 }
 
 std::size_t bvs_down_to(const Bvh& bvh, int level)

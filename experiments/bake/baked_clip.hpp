@@ -32,6 +32,9 @@ BakedFigures figures_of(const DeformableSurface& surface, const Bvh& bvh, std::s
                         IntervalRefitter& refit, const TimedMotion& motion, const BakeOptions& options,
                         const std::vector<BakedInterval>& baked);
 
+/// Adds Σ_i a_i d_i to rest vertices.
+void displace(std::span<const MorphTarget> targets, std::span<const double> weights, std::vector<Vec3>& vertices);
+
 /// Of a level and those above it.
 std::size_t bvs_down_to(const Bvh& bvh, int level);
 std::size_t level_of(const Bvh& bvh, std::size_t bv);

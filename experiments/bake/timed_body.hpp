@@ -4,9 +4,7 @@
 #include <memory>
 
 #include "cinch/io.hpp"
-#include "exact/time_check.hpp"
 #include "experiments/bake/bake.hpp"
-#include "experiments/bake/baked_clip.hpp"
 #include "experiments/input.hpp"
 #include "toolkit/time/motion_interval.hpp"
 
@@ -36,12 +34,5 @@ std::vector<TimedBody> load_timed(const InputOptions& options);
 
 /// The motion that ends when it is asked to; and says what a wrong formula would say, for tests of the exact side.
 TimedMotion watched(TimedMotion motion, TimeSabotage how);
-
-/// Proves baked bounds of one of a body's clips.
-exact::TimeVerdict prove(const TimedBody& body, const TimedClip& clip, const Bvh& bvh, int kdop,
-                         std::span<const BakedInterval> intervals);
-/// "N bounds for all times, P proven, V violated", with what is undecided; and where the worst vertex is.
-std::string verdict_line(const exact::TimeVerdict& verdict);
-std::string worst_line(const exact::TimeVerdict& verdict);
 
 } // namespace cinch

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include "cinch/environment.hpp"
-#include "experiments/bake/timed_body.hpp"
+#include "experiments/bake/prove.hpp"
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/progress.hpp"
 #include "experiments/verify.hpp"

@@ -26,6 +26,8 @@ struct ViewRequest {
     bool partial = false;                  ///< of a character: what is modelled, see InputOptions
     std::string weights, transforms, clip; ///< see InputOptions
 
+    bool swept = false; ///< of a clip's intervals, for all of their times, first of all; the frames with morph targets
+
     Method method = Method::best; ///< shown first
     std::size_t level = 3;
     double time = 1;               ///< of the clip's length: the frame

@@ -159,6 +159,7 @@ TEST_CASE(
     brain.kdop = 26;
     brain.nodes = 65;
     sheet.kdop = 14;
+    sheet.swept = santas.swept = true;
     for (const ViewRequest& r : {santas, brain, sheet}) {
         CAPTURE(r.scene);
         const Json view = make_view(r);
@@ -182,7 +183,8 @@ TEST_CASE(
                         most = std::max(most, d % 2 ? -along : along);
                     }
             }
-        REQUIRE(view["bounds"].size() == r.methods.size());
+        REQUIRE(view["bounds"].size() == r.methods.size() + (r.swept ? 1 : 0));
+        CHECK(view["bounds"].contains("all times") == r.swept);
         for (const auto& [method, packed] : view["bounds"].items()) {
             CAPTURE(method);
             const Unpacked bounds = unpack(packed);

@@ -342,6 +342,10 @@ with tempfile.TemporaryDirectory() as folder:
         for kind in kinds:
             wrong = subprocess.run([program, *prove, "--sabotage", kind], capture_output=True, text=True)
             assert wrong.returncode == 1, "%s is not found: %s" % (kind, wrong.stdout)
+    # A page of a character with morph targets has bounds for all times and no others, over all of its frames.
+    shown = json.loads(subprocess.run([program, "view", os.path.join(folder, "face.gltf"), "--swept", "--json"],
+                                      capture_output=True, text=True).stdout.splitlines()[0])["view"]
+    assert list(shown["bounds"]) == ["all times"] and len(shown["time_s"]) == 60, shown.keys()
     npz = os.path.join(folder, "wave.npz")
     assert subprocess.run([program, "bake", made, "--level", "-1", "--npz", npz, "--usd", npz + ".usda"],
                           capture_output=True).returncode == 0

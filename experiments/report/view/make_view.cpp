@@ -9,6 +9,7 @@
 #include "cinch/collider.hpp"
 #include "cinch/deform.hpp"
 #include "cinch/surface.hpp"
+#include "experiments/bake/swept.hpp"
 #include "experiments/input.hpp"
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/or_leave.hpp"
@@ -24,6 +25,8 @@ namespace cinch {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+const std::string all_times = "all times"; // beside the names of methods
 
 // A body as the view draws it: triangles in the order of the BVH, so that a BV is a range of them, and the vertices
 // that they use in the order in which they do.
@@ -55,16 +58,20 @@ struct DrawnBody {
 };
 
 // Positions of all drawn vertices of all bodies, frame after frame; refuses those that are not finite.
-std::vector<std::vector<Vec3>> evaluate(const std::vector<DrawnBody>& bodies, std::size_t frames,
-                                        const std::string& scene)
+std::vector<std::vector<Vec3>> evaluate(const std::vector<DrawnBody>& bodies, const std::vector<TimedBody>& timed,
+                                        std::size_t frames, const std::string& scene)
 {
     std::vector<std::vector<Vec3>> all(frames);
-    for (const DrawnBody& body : bodies) {
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        const DrawnBody& body = bodies[b];
         const SurfaceEvaluator<double> evaluator(body.input.surface);
         std::vector<Vec3> positions(body.input.surface.mesh.vertices.size());
         for (std::size_t f = 0; f < frames; ++f) {
             throw_if_interrupted();
-            evaluator(body.input.clip.frame(f), positions);
+            if (timed.empty())
+                evaluator(body.input.clip.frame(f), positions);
+            else
+                positions = places_at(timed[b], body.input.clip.time_s(f));
             for (const std::uint32_t v : body.vertex) {
                 if (!positions[v].allFinite())
                     throw InputError::in_file(scene,
@@ -204,6 +211,25 @@ std::vector<std::int32_t> bounds_by(Method method, const ViewRequest& request, c
     return out;
 }
 
+// The same of intervals of time around the frames.
+std::vector<std::int32_t> swept_on_grid(const ViewRequest& request, const std::vector<TimedBody>& timed,
+                                        const std::vector<DrawnBody>& bodies, const DrawnBvs& bvs, const Grid& grid,
+                                        std::size_t frames)
+{
+    const auto k = static_cast<std::size_t>(request.kdop);
+    const auto axes = axes_of(request.kdop);
+    std::vector<std::int32_t> out(frames * bvs.bv.size() * k);
+    for (std::uint32_t b = 0; b < bodies.size(); ++b) {
+        const std::vector<double> supports = swept_bounds(timed[b], bodies[b].input, bodies[b].bvh, request.kdop);
+        for (std::size_t f = 0; f < frames; ++f)
+            for (std::size_t i = 0; i < bvs.bv.size(); ++i)
+                for (std::size_t d = 0; bvs.body[i] == b && d < k; ++d)
+                    out[(f * bvs.bv.size() + i) * k + d] = grid.support(
+                        axes[d / 2], d % 2 == 1, supports[(f * bodies[b].bvh.bvs.size() + bvs.bv[i]) * k + d]);
+    }
+    return out;
+}
+
 // The triangles of each frame that intersect one of another body, ascending, frames one after the other; and how many
 // pairs.
 struct Contacts {
@@ -251,7 +277,7 @@ Contacts contacts(const std::vector<DrawnBody>& bodies, std::size_t frames)
 
 Json shown_first(const ViewRequest& request, std::size_t frames, std::size_t levels)
 {
-    return {{"method", name_of(request.method)},
+    return {{"method", request.swept ? all_times : std::string(name_of(request.method))},
             {"level", std::min(request.level, levels - 1)},
             {"frame", static_cast<std::size_t>(
                           std::llround(std::clamp(request.time, 0.0, 1.0) * static_cast<double>(frames - 1)))},
@@ -260,6 +286,21 @@ Json shown_first(const ViewRequest& request, std::size_t frames, std::size_t lev
             {"bounds", request.show_bounds},
             {"azimuth", request.azimuth},
             {"elevation", request.elevation}};
+}
+
+// The bodies with clips as functions of time, and frames of them.
+Inputs with_all_times(InputOptions what, std::size_t frames, std::vector<TimedBody>& timed)
+{
+    what.frames = 0;
+    what.first_frame = false;
+    timed = load_timed(what);
+    Inputs out{what.input, {}, {}};
+    for (TimedBody& body : timed) {
+        body.clips.resize(1); // the first, or the one that was asked for
+        out.bodies.push_back(with_frames(body, frames));
+        out.report.insert(out.report.end(), body.input.report.begin(), body.input.report.end());
+    }
+    return out;
 }
 
 void require_valid(const ViewRequest& request)
@@ -287,7 +328,13 @@ nlohmann::ordered_json make_view(const ViewRequest& request)
     what.weights = request.weights;
     what.transforms = request.transforms;
     what.clip = request.clip;
-    const Inputs inputs = or_leave([what] { return load_inputs(what); });
+    std::vector<TimedBody> timed;
+    const Inputs inputs = request.swept ? with_all_times(what, request.frames, timed)
+                                        : or_leave([what] { return load_inputs(what); });
+    const bool morphs = std::any_of(timed.begin(), timed.end(),
+                                    [](const TimedBody& body) { return bool(body.clips.front().motion.weights); });
+    // Bounds of single frames know of no morph targets.
+    const std::vector<Method> methods = morphs ? std::vector<Method>() : request.methods;
 
     std::vector<DrawnBody> bodies;
     bodies.reserve(inputs.bodies.size());
@@ -304,6 +351,7 @@ nlohmann::ordered_json make_view(const ViewRequest& request)
               {"text", request.text},
               {"scene", request.scene}};
     view["missing"] = inputs.missing();
+    view["methods"] = methods.size() + (request.swept ? 1 : 0);
     view["first"] = shown_first(request, frames, bvs.level.size() - 1);
     view["time_s"] = times;
     view["bodies"] = Json::array();
@@ -316,7 +364,7 @@ nlohmann::ordered_json make_view(const ViewRequest& request)
     view["kdop"] = request.kdop;
     view["bvs"] = {{"level", bvs.level}, {"first", bvs.first}, {"count", bvs.count}};
     {
-        const auto positions = evaluate(bodies, frames, request.scene);
+        const auto positions = evaluate(bodies, timed, frames, request.scene);
         const Grid grid = grid_of(positions, request.bits);
         view["step"] = grid.step;
         view["origin"] = grid.origin;
@@ -325,9 +373,12 @@ nlohmann::ordered_json make_view(const ViewRequest& request)
         view["positions"] = pack_positions(positions, grid, corners);
         view["nodes"] = pack_nodes(bodies, frames, grid);
         view["bounds"] = Json::object();
-        Progress progress(fmt::format("{}: bounds for the view", request.scene), request.methods.size());
+        if (request.swept)
+            view["bounds"][all_times] = pack(swept_on_grid(request, timed, bodies, bvs, grid, frames), frames,
+                                             bvs.bv.size(), static_cast<std::size_t>(request.kdop));
+        Progress progress(fmt::format("{}: bounds for the view", request.scene), methods.size());
         std::size_t done = 0;
-        for (const Method method : request.methods) {
+        for (const Method method : methods) {
             try {
                 view["bounds"][std::string(name_of(method))] =
                     pack(bounds_by(method, request, bodies, bvs, grid, frames), frames, bvs.bv.size(),

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/bake/swept.hpp"
+
+#include <algorithm>
+
+#include "experiments/bake/baked_clip.hpp"
+
+namespace cinch {
+
+Input with_frames(const TimedBody& body, std::size_t frames)
+{
+    const TimedMotion& motion = body.clips.front().motion;
+    const double first = motion.first_s(), last = motion.last_s();
+    const std::size_t count = last > first ? std::max<std::size_t>(frames, 2) : 1;
+    auto time_s = [first, last, count](std::size_t i) {
+        return i + 1 == count ? last
+                              : first + (last - first) * static_cast<double>(i) / static_cast<double>(count - 1);
+    };
+    Input out = body.input;
+    out.clip = {motion.name, count, time_s, [at = motion.at, time_s](std::size_t i) { return at(time_s(i)); }};
+    return out;
+}
+
+std::vector<Vec3> places_at(const TimedBody& body, double t_s)
+{
+    const TimedMotion& motion = body.clips.front().motion;
+    const DeformableSurface& surface = body.input.surface;
+    std::vector<Vec3> rest = surface.mesh.vertices, out(rest.size());
+    if (motion.weights)
+        displace(body.targets(), motion.weights(t_s), rest);
+    evaluate(rest, surface.weights, motion.at(t_s), out);
+    return out;
+}
+
+std::vector<double> swept_bounds(const TimedBody& body, const Input& input, const Bvh& bvh, int kdop)
+{
+    BakeOptions options;
+    options.bounds.kdop = kdop;
+    IntervalRefitter refit(bvh, body.input.surface, options.bounds, body.targets());
+    const std::size_t supports = bvh.bvs.size() * static_cast<std::size_t>(kdop);
+    const std::vector<BakedInterval> intervals =
+        bake_clip(refit, watched(body.clips.front().motion, TimeSabotage::none), options, supports);
+    std::vector<double> out;
+    for (std::size_t f = 0; f < input.clip.frame_count(); ++f) {
+        const double t = input.clip.time_s(f);
+        const auto around =
+            std::find_if(intervals.begin(), intervals.end(), [t](const BakedInterval& i) { return t <= i.last_s; });
+        out.insert(out.end(), around->supports.begin(), around->supports.end());
+    }
+    return out;
+}
+
+} // namespace cinch
