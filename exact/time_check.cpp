@@ -15,6 +15,9 @@ namespace cinch::exact {
 namespace {
 
 constexpr int most_halvings = 48;
+// Bounds with any room at all take hundreds of pieces between two keys; one that a place touches for a while, as damaged
+// ones do, would take 2^48.
+constexpr std::size_t spare_pieces = 20'000, pieces_per_key = 20'000;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 using Place = std::array<Interval, 3>;
@@ -136,6 +139,7 @@ TimeVerdict TimeChecker::operator()(double a_s, double b_s, std::span<const doub
     for (std::size_t i = cuts.size() - 1; i-- > 0;)
         pieces.push_back({cuts[i], cuts[i + 1], cuts[i], cuts[i + 1], 0, nullptr, nullptr, all});
     pieces.push_back({b_s, b_s, b_s, b_s, 0, nullptr, nullptr, all}); // to which a curve may jump
+    const std::size_t most_pieces = spare_pieces + pieces_per_key * pieces.size();
     std::vector<MapEnclosure> maps, slopes;
     std::vector<Enclosure> weights, weight_slopes;
     auto enclose = [&](double a, double b, const Piece& piece) {
@@ -230,7 +234,7 @@ TimeVerdict TimeChecker::operator()(double a_s, double b_s, std::span<const doub
                 rest.push_back(piece.open[n]);
         if (rest.empty())
             continue;
-        if (piece.halvings < most_halvings && middle > piece.a && middle < piece.b) {
+        if (piece.halvings < most_halvings && out.pieces < most_pieces && middle > piece.a && middle < piece.b) {
             pieces.push_back(
                 {middle, piece.b, piece.piece_a, piece.piece_b, piece.halvings + 1, at_middle, piece.at_b, rest});
             pieces.push_back({piece.a, middle, piece.piece_a, piece.piece_b, piece.halvings + 1, piece.at_a, at_middle,

@@ -31,10 +31,10 @@ struct TimeVerdict {
 };
 
 /// Branch and bound over time on the transforms themselves: whether every vertex of every BV, w·T(t)(y + Σ a_i(t) d_i)
-/// in real arithmetic, stays below supports[bv·k + d] at all real t of [a, b]. On a piece of time about m a vertex is enclosed
-/// by x(m) + x′(piece)(t − m), both from interval arithmetic, and where the slope has one sign by its ends; pieces that
-/// do not decide are halved, for the vertices that they leave open, 48 times at most. In parallel over vertices. `poll`
-/// is called now and then and may throw.
+/// in real arithmetic, stays below supports[bv·k + d] at all real t of [a, b]. On a piece of time about m a vertex is
+/// enclosed by x(m) + x′(piece)(t − m), both from interval arithmetic, and where the slope has one sign by its ends;
+/// pieces that do not decide are halved, for the vertices that they leave open, 48 times at most, and no more than some
+/// ten thousand pieces per key. In parallel over vertices. `poll` is called now and then and may throw.
 class TimeChecker {
 public:
     /// Surface, BVH and clip must stay as they are, and alive. `targets`: those whose weights the clip has.
