@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cinch/environment.hpp"
+#include "experiments/bake/bake_targets.hpp"
 #include "experiments/bake/prove.hpp"
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/number.hpp"
@@ -74,6 +75,7 @@ int bake(const BakeOptions& options)
                               written = bvs_down_to(bvh, options.level);
             IntervalRefitter refit(bvh, body.input.surface, options.bounds, body.targets());
             std::vector<std::pair<std::string, std::vector<BakedInterval>>> baked;
+            std::vector<BakedFigures> figures;
             Progress progress("baking clips", body.clips.size());
             for (const TimedClip& source : body.clips) {
                 const TimedMotion motion = watched(source.motion, options.sabotage);
@@ -112,10 +114,19 @@ int bake(const BakeOptions& options)
                                 {"missed", f.missed_by_us},
                                 {"key_segments", f.key_segments},
                                 {"intervals", f.intervals}});
+                    figures.push_back(f);
                     if (words)
                         fmt::print("{}", words_of(f));
                 }
                 progress.done(baked.size());
+            }
+            if (options.report) {
+                const std::vector<Figure> reached = time_targets(
+                    figures, refits_per_interval(body, bvh, options.bounds), bvh.bvs.size());
+                for (const Figure& figure : reached)
+                    output.add(record_of(figure, "bake"));
+                if (words)
+                    print(reached);
             }
             if (!options.npz.empty())
                 write_npz(options.npz, bvh, written, options.bounds.kdop, baked);

@@ -135,6 +135,7 @@ BakedFigures figures_of(const DeformableSurface& surface, const Bvh& bvh, std::s
     const double least = -std::numeric_limits<double>::infinity();
     BakedFigures out;
     out.key_segments = motion.keys.size() - 1;
+    out.length_s = motion.last_s() - motion.first_s();
     Truth vertices(surface, bvh, targets, kdop);
     std::vector<double> now(count), truth(count, least), all(count, least), at_keys(count, least), at_30(count, least);
     double sum = 0, number = 0;

@@ -27,6 +27,7 @@ struct BakedFigures {
                                               ///< second and at key times, of its half diagonal
     double missed_by_us = 0;                  ///< the same of the root's bounds: 0
     std::size_t key_segments = 0, intervals = 0;
+    double length_s = 0;
 };
 BakedFigures figures_of(const DeformableSurface& surface, const Bvh& bvh, std::span<const MorphTarget> targets,
                         IntervalRefitter& refit, const TimedMotion& motion, const BakeOptions& options,

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include <Eigen/Core>
 
 #include "cinch/io.hpp"
@@ -45,8 +47,9 @@ private:
 /// has a key.
 class BonePath {
 public:
-    /// `curves`: those of the bone; the piece of each is that of the interval's middle.
-    BonePath(const Bone& bone, const std::vector<const Curve*>& curves, double middle_s);
+    /// `curves`: those of the bone; the piece of each is that of the interval's middle. `end_s`: only for values there,
+    /// the same as those at the beginning of the next interval where curves do not jump.
+    BonePath(const Bone& bone, const std::vector<const Curve*>& curves, double middle_s, std::optional<double> end_s);
 
     /// The linear part and the translation, and their first two derivatives.
     struct Jet {

@@ -111,7 +111,7 @@ public:
     MotionInterval over(double a_s, double b_s) const;
 
 private:
-    std::vector<BonePath> paths(double middle_s) const;
+    std::vector<BonePath> paths(double middle_s, std::optional<double> end_s = {}) const;
 
     std::string file_, name_;
     std::vector<Bone> bones_;
@@ -126,7 +126,7 @@ private:
     std::vector<std::vector<std::pair<std::uint32_t, double>>> farthest_;
 };
 
-std::vector<BonePath> CharacterMotion::paths(double middle_s) const
+std::vector<BonePath> CharacterMotion::paths(double middle_s, std::optional<double> end_s) const
 {
     std::vector<BonePath> out;
     out.reserve(bones_.size());
@@ -134,7 +134,7 @@ std::vector<BonePath> CharacterMotion::paths(double middle_s) const
         std::vector<const Curve*> curves;
         for (const std::size_t c : curves_of_[b])
             curves.push_back(&curves_[c]);
-        out.emplace_back(bones_[b], curves, middle_s);
+        out.emplace_back(bones_[b], curves, middle_s, end_s);
     }
     return out;
 }
@@ -158,7 +158,7 @@ MotionInterval CharacterMotion::over(double a_s, double b_s) const
 {
     const double middle_s = a_s + (b_s - a_s) / 2, length = (b_s - a_s) * wider;
     const std::vector<BonePath> path = paths(middle_s);
-    const std::vector<World> first = world_at(bones_, path, a_s), last = world_at(bones_, path, b_s),
+    const std::vector<World> first = world_at(bones_, path, a_s), last = world_at(bones_, paths(middle_s, b_s), b_s),
                              middle = world_at(bones_, path, middle_s);
     std::vector<BonePath::Limits> limits;
     std::vector<BonePath::Jet> jets;
@@ -175,7 +175,7 @@ MotionInterval CharacterMotion::over(double a_s, double b_s) const
         const WeightPath of(weights_, weight_curves_, middle_s);
         weights = of.over(a_s, b_s);
         out.morph.first = of.at(0, a_s);
-        out.morph.last = of.at(0, b_s);
+        out.morph.last = WeightPath(weights_, weight_curves_, middle_s, b_s).at(0, b_s);
         for (std::size_t k = 0; k < 3; ++k)
             out.morph.at[k] = of.at(k, middle_s);
     }

@@ -23,6 +23,14 @@ inline CurvePiece piece_of(std::span<const double> time_s, Curve::Interpolation 
     return {key, next == time_s.end() || interpolation == Curve::Interpolation::step};
 }
 
+/// The time whose piece gives a curve's value at the end of an interval about `middle_s`: the end itself where the curve
+/// does not jump there, so that the next interval begins with the same bits; else the middle.
+inline double end_of(std::span<const double> time_s, Curve::Interpolation interpolation, double middle_s, double end_s)
+{
+    const auto [first, last] = std::equal_range(time_s.begin(), time_s.end(), end_s);
+    return interpolation != Curve::Interpolation::step && last - first == 1 ? end_s : middle_s;
+}
+
 /// The piece as a polynomial of the time since its key; LINEAR and CUBICSPLINE of the glTF specification, appendix C.
 /// `value(i)`: the curve's i-th, tangents counted.
 template <std::size_t N, class F>

@@ -39,13 +39,12 @@ double greatest_between(double first, double last, double bump, double path)
         return infinite;
     // Each value below passes at most 6 roundings of what |first| + |last| + bump are the size of: the last term is at
     // most (last − first)/4, as last − first < 4 bump where it is taken.
-    double parabola = most;
-    if (!(bump <= 0) && !(most - least >= 4 * bump)) {
-        const double d = most - least;
-        parabola = (first + last) / 2 + bump + d * d / (16 * bump);
-        parabola = std::max(most, parabola + 0x1p-49 * (std::abs(first) + std::abs(last) + bump));
-        parabola = infinite_unless(parabola);
-    }
+    if (bump <= 0 || most - least >= 4 * bump)
+        return succ(most);
+    const double d = most - least;
+    double parabola = (first + last) / 2 + bump + d * d / (16 * bump);
+    parabola = std::max(most, parabola + 0x1p-49 * (std::abs(first) + std::abs(last) + bump));
+    parabola = infinite_unless(parabola);
     const double way = std::min((first + last + path) / 2, least + path),
                  lipschitz = infinite_unless(way + 0x1p-49 * (std::abs(first) + std::abs(last) + path));
     return succ(std::min(parabola, std::max(most, lipschitz)));
@@ -106,25 +105,32 @@ void IntervalRefitter::operator()(const MotionInterval& motion, std::span<double
     }
     const auto axes = axes_of(kdop_);
     const auto k = static_cast<std::size_t>(kdop_);
+    std::array<double, 13> norm; // of the axes; the first three are those of the coordinates, of length 1
+    for (std::size_t a = 0; a < axes.size(); ++a)
+        norm[a] = succ(std::sqrt(static_cast<double>(axes[a][0] * axes[a][0] + axes[a][1] * axes[a][1] +
+                                                     axes[a][2] * axes[a][2])));
     for (std::size_t i = 0; i < bvh_.bvs.size(); ++i) {
         const RestBv bv = bvh_.rest(i);
-        auto limit = [&](double MotionInterval::Limits::*of) {
-            return greatest_mean(bv, [&](std::size_t j) { return motion.limits[bv.node[j]].*of; });
-        };
-        using L = MotionInterval::Limits;
+        // The greatest of each limit, and the mean of the remainder, which alone decides where all is well.
+        MotionInterval::Limits most;
+        for (const std::uint32_t j : bv.node) {
+            const MotionInterval::Limits& of = motion.limits[j];
+            most.bump = std::max(most.bump, of.bump);
+            most.path = std::max(most.path, of.path);
+            most.error = std::max(most.error, of.error);
+            most.bend_error = std::max(most.bend_error, of.bend_error);
+        }
         // Evaluation of a vertex of n influences rounds by (n + 8)u of what `error`, at least 2⁻⁴² of it, stands for.
         // So do displacements by (m + n + 16)u of four times it, m the targets; see MorphBoxes.
         const double evaluation =
             1 + bv.vertex_influences / 256.0 +
             (morph.empty() ? 0 : static_cast<double>(morphs_.count(i) + bv.node.size()) / 256);
-        const double remainder = limit(&L::remainder) + limit(&L::bend_error) * evaluation, bump = limit(&L::bump),
-                     path = limit(&L::path), error = limit(&L::error) * evaluation;
+        const double remainder = greatest_mean(bv, [&](std::size_t j) { return motion.limits[bv.node[j]].remainder; }) +
+                                 most.bend_error * evaluation,
+                     bump = most.bump, path = most.path, error = most.error * evaluation;
         for (std::size_t d = 0; d < k; ++d) {
-            const auto& axis = axes[d / 2];
-            const double norm =
-                succ(std::sqrt(static_cast<double>(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2])));
             const std::size_t at = i * k + d;
-            auto scaled = [&](double x) { return succ(norm * x); };
+            auto scaled = [&](double x) { return d < 6 ? x : succ(norm[d / 2] * x); };
             const double s = std::min(succ(bend_[at] + scaled(remainder)), scaled(bump));
             supports[at] = greatest_between(succ(first_[at] + scaled(error)), succ(last_[at] + scaled(error)),
                                             std::isnan(s) ? scaled(bump) : s, scaled(path));

@@ -3,13 +3,16 @@
 
 namespace cinch {
 
-WeightPath::WeightPath(const std::vector<double>& still, const std::vector<WeightCurve>& curves, double middle_s)
+WeightPath::WeightPath(const std::vector<double>& still, const std::vector<WeightCurve>& curves, double middle_s,
+                       std::optional<double> end_s)
 {
     path_.reserve(still.size());
     for (const double weight : still)
         path_.push_back({0, 0, Polynomial<1>{{{weight}}}});
     for (const WeightCurve& curve : curves) {
-        const CurvePiece piece = piece_of(curve.time_s, curve.interpolation, middle_s);
+        const CurvePiece piece = piece_of(
+            curve.time_s, curve.interpolation,
+            end_s ? end_of(curve.time_s, curve.interpolation, middle_s, *end_s) : middle_s);
         const double key_s = curve.time_s[piece.key],
                      length_s = piece.constant ? 0 : curve.time_s[piece.key + 1] - key_s;
         for (std::size_t i = 0; i < curve.count; ++i)

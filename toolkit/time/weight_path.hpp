@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include "toolkit/time/curve_piece.hpp"
 
 namespace cinch {
@@ -9,7 +11,9 @@ namespace cinch {
 class WeightPath {
 public:
     /// `still`: of all targets, where no curve moves them; the piece of each curve is that of the interval's middle.
-    WeightPath(const std::vector<double>& still, const std::vector<WeightCurve>& curves, double middle_s);
+    /// `end_s`: as of a BonePath.
+    WeightPath(const std::vector<double>& still, const std::vector<WeightCurve>& curves, double middle_s,
+               std::optional<double> end_s = {});
 
     /// The k-th derivative, of every target.
     std::vector<double> at(std::size_t k, double t_s) const;
