@@ -310,7 +310,8 @@ struct ClipEnclosure::Parts {
 };
 
 ClipEnclosure::ClipEnclosure(const Character& character, const Character::Animation& animation)
-    : parts_(new Parts{character.bones, character.joints, animation.curves, {}, {}, {}, character.target_weights, animation.morphs})
+    : parts_(new Parts{
+          character.bones, character.joints, animation.curves, {}, {}, {}, character.target_weights, animation.morphs})
 {
     const DirectedRounding rounding;
     for (const Curve& curve : parts_->curves) {

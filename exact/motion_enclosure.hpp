@@ -27,8 +27,8 @@ public:
     virtual void at(double a_s, double b_s, double piece_a_s, double piece_b_s, std::vector<MapEnclosure>& maps,
                     std::vector<MapEnclosure>& slopes) const = 0;
     /// The same of the weights of morph targets, as many as there are.
-    virtual void weights_at(double a_s, double b_s, double piece_a_s, double piece_b_s,
-                            std::vector<Enclosure>& weights, std::vector<Enclosure>& slopes) const = 0;
+    virtual void weights_at(double a_s, double b_s, double piece_a_s, double piece_b_s, std::vector<Enclosure>& weights,
+                            std::vector<Enclosure>& slopes) const = 0;
     /// Times of keys, ascending, each once.
     virtual const std::vector<double>& keys() const = 0;
 };

@@ -15,8 +15,8 @@ namespace cinch::exact {
 namespace {
 
 constexpr int most_halvings = 48;
-// Bounds with any room at all take hundreds of pieces between two keys; one that a place touches for a while, as damaged
-// ones do, would take 2^48.
+// Bounds with any room at all take hundreds of pieces between two keys; one that a place touches for a while, as
+// damaged ones do, would take 2^48.
 constexpr std::size_t spare_pieces = 20'000, pieces_per_key = 20'000;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 

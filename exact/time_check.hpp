@@ -49,8 +49,8 @@ private:
     const MotionEnclosure& clip_;
     int kdop_;
     std::function<void()> poll_;
-    std::vector<std::uint32_t> vertices_; ///< of any triangle
-    std::vector<std::uint32_t> row_, bv_; ///< the BVs that contain each of them
+    std::vector<std::uint32_t> vertices_;                                ///< of any triangle
+    std::vector<std::uint32_t> row_, bv_;                                ///< the BVs that contain each of them
     std::vector<std::vector<std::pair<std::uint32_t, Vec3>>> displaced_; ///< by targets, every vertex; empty: by none
 };
 

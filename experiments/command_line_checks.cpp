@@ -90,7 +90,8 @@ void add_fuzz(CLI::App& app, Run& run)
         ->check(CLI::NonNegativeNumber)
         ->option_text("N");
     option("--seed", o.seed, "case i of a seed is always the same [0]")->option_text("N");
-    option("--family", o.family, fmt::format("only this family: {} [all but the last in turn]", fmt::join(fuzz_families(), ", ")))
+    option("--family", o.family,
+           fmt::format("only this family: {} [all but the last in turn]", fmt::join(fuzz_families(), ", ")))
         ->check(CLI::Validator(
             [](std::string& text) {
                 const auto known = fuzz_families();

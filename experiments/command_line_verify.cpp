@@ -11,7 +11,9 @@ void add_verify(CLI::App& app, Run& run)
     const auto options = std::make_shared<VerifyOptions>();
     VerifyOptions& o = *options;
     CLI::App& command = *app.add_subcommand("verify", "prove every bound in exact arithmetic");
-    command.callback([options, &run] { run = [options] { return options->all_times ? verify_all_times(*options) : verify(*options); }; });
+    command.callback([options, &run] {
+        run = [options] { return options->all_times ? verify_all_times(*options) : verify(*options); };
+    });
     add_input(command, o.input);
     const auto option = options_of(command);
     add_methods(command, o.methods);

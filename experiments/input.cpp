@@ -291,8 +291,8 @@ Input load_input(const InputOptions& options)
     }
     if (input.surface.mesh.triangles.empty())
         throw InputError::in_file(options.input, "has no triangles; there is nothing to bound");
-    head_report(input, fmt::format("motion '{}', {}", input.clip.name,
-                                   counted(input.clip.frame_count(), "frame", "frames")));
+    head_report(input,
+                fmt::format("motion '{}', {}", input.clip.name, counted(input.clip.frame_count(), "frame", "frames")));
     return input;
 }
 

@@ -101,7 +101,8 @@ int bake(const BakeOptions& options)
                     fmt::print("{}", proof);
                 }
                 if (options.report) {
-                    const BakedFigures f = figures_of(body.input.surface, bvh, body.targets(), refit, source.motion, options, intervals);
+                    const BakedFigures f =
+                        figures_of(body.input.surface, bvh, body.targets(), refit, source.motion, options, intervals);
                     output.add({{"experiment", "bake"},
                                 {"input", body.input.name},
                                 {"clip", motion.name},
@@ -121,8 +122,8 @@ int bake(const BakeOptions& options)
                 progress.done(baked.size());
             }
             if (options.report) {
-                const std::vector<Figure> reached = time_targets(
-                    figures, refits_per_interval(body, bvh, options.bounds), bvh.bvs.size());
+                const std::vector<Figure> reached =
+                    time_targets(figures, refits_per_interval(body, bvh, options.bounds), bvh.bvs.size());
                 for (const Figure& figure : reached)
                     output.add(record_of(figure, "bake"));
                 if (words)

@@ -40,8 +40,7 @@ template <class F> void each_time(const TimedMotion& motion, int samples, double
 class Truth {
 public:
     Truth(const DeformableSurface& surface, const Bvh& bvh, std::span<const MorphTarget> targets, int kdop)
-        : surface_(surface), bvh_(bvh), targets_(targets), axes_(axes_of(kdop)),
-          place_(surface.mesh.vertices.size())
+        : surface_(surface), bvh_(bvh), targets_(targets), axes_(axes_of(kdop)), place_(surface.mesh.vertices.size())
     {
     }
 

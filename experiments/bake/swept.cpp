@@ -13,11 +13,24 @@ Input with_frames(const TimedBody& body, std::size_t frames)
     const double first = motion.first_s(), last = motion.last_s();
     const std::size_t count = last > first ? std::max<std::size_t>(frames, 2) : 1;
     auto time_s = [first, last, count](std::size_t i) {
-        return i + 1 == count ? last
-                              : first + (last - first) * static_cast<double>(i) / static_cast<double>(count - 1);
+        return i + 1 == count ? last : first + (last - first) * static_cast<double>(i) / static_cast<double>(count - 1);
     };
     Input out = body.input;
     out.clip = {motion.name, count, time_s, [at = motion.at, time_s](std::size_t i) { return at(time_s(i)); }};
+    return out;
+}
+
+Inputs with_all_times(InputOptions what, std::size_t frames, std::vector<TimedBody>& timed)
+{
+    what.frames = 0;
+    what.first_frame = false;
+    timed = load_timed(what);
+    Inputs out{what.input, {}, {}};
+    for (TimedBody& body : timed) {
+        body.clips.resize(1); // the first, or the one that was asked for
+        out.bodies.push_back(with_frames(body, frames));
+        out.report.insert(out.report.end(), body.input.report.begin(), body.input.report.end());
+    }
     return out;
 }
 

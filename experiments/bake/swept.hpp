@@ -8,6 +8,10 @@ namespace cinch {
 /// A body's first clip as so many frames, evenly spread, the first and the last included: its input with such a clip.
 Input with_frames(const TimedBody& body, std::size_t frames);
 
+/// An input as bodies with clips as functions of time, `timed`, each with the first clip or the one that was asked for;
+/// and as so many frames of them.
+Inputs with_all_times(InputOptions what, std::size_t frames, std::vector<TimedBody>& timed);
+
 /// Where the body's vertices are at a time of its first clip, morph targets added.
 std::vector<Vec3> places_at(const TimedBody& body, double t_s);
 

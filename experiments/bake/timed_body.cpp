@@ -46,8 +46,8 @@ std::vector<TimedBody> load_timed(const InputOptions& options)
         std::string known;
         for (const Character::Animation& animation : character.animations)
             known += (known.empty() ? "" : ", ") + animation.name;
-        throw InputError::in_file(what.input, fmt::format("has no clip '{}'; it has {}", what.clip,
-                                                          known.empty() ? "none" : known));
+        throw InputError::in_file(
+            what.input, fmt::format("has no clip '{}'; it has {}", what.clip, known.empty() ? "none" : known));
     }
     for (const Character::Animation* animation : wanted) {
         if (!animation->missing.empty()) {

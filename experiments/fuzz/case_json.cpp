@@ -45,8 +45,8 @@ std::string to_json(const FuzzCase& c, const std::string& fault)
 {
     json out{{"family", c.family}, {"n", c.nodes()}, {"fault", fault}};
     if (c.is_of_times()) {
-        out = {{"family", c.family}, {"fault", fault}, {"drawn", c.drawn},
-               {"kdop", c.kdop}, {"trial", c.trial}, {"passes", c.passes}};
+        out = {{"family", c.family}, {"fault", fault},   {"drawn", c.drawn},
+               {"kdop", c.kdop},     {"trial", c.trial}, {"passes", c.passes}};
         return out.dump();
     }
     if (!c.is_surface()) {

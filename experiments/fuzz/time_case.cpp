@@ -111,8 +111,11 @@ void add_targets(Random& random, std::size_t vertices, Character& c)
     const std::size_t first = one_of(random, count);
     // Four numbers of a curve are as many weights as there are.
     const Curve from = random_curve(random, 0, Curve::Target::translation);
-    WeightCurve curve{static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(count - first), from.interpolation,
-                      from.time_s, {}};
+    WeightCurve curve{static_cast<std::uint32_t>(first),
+                      static_cast<std::uint32_t>(count - first),
+                      from.interpolation,
+                      from.time_s,
+                      {}};
     for (const auto& value : from.value)
         for (std::size_t n = 0; n < curve.count; ++n)
             curve.value.push_back(value[n]);

@@ -40,7 +40,8 @@ std::string time_fault(const FuzzCase& problem, Defect defect)
     const TimedMotion motion =
         watched(character_motion(drawn.character, drawn.character.rest, drawn.surface), sabotage_of(defect));
     RefitOptions options;
-    options.methods = std::array{Methods(Method::best), Methods(Method::local), Methods(Method::limited)}[problem.trial % 3];
+    options.methods =
+        std::array{Methods(Method::best), Methods(Method::local), Methods(Method::limited)}[problem.trial % 3];
     options.kdop = problem.kdop;
     options.precision = problem.trial % 2 ? Precision::float64 : Precision::float32;
     IntervalRefitter refit(drawn.bvh, drawn.surface, options, drawn.character.targets);

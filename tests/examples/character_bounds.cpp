@@ -12,7 +12,7 @@ try {
     std::vector<double> supports(bvh.bvs.size() * 6);
     for (const cinch::Character::Animation& clip : character.animations) {
         cinch::ClipBounder bound(character, clip, surface, bvh);
-        bound(clip.first_s, clip.last_s, supports); // all BVs, at every real time between
+        bound(clip.first_s, clip.last_s, supports);                              // all BVs, at every real time between
         const cinch::Aabb box = cinch::Dop(std::span(supports).first(6)).aabb(); // of the root
         std::cout << clip.name << ": " << box.lower.transpose() << " to " << box.upper.transpose() << '\n';
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What an engine does with `cinch bake FILE.glb --json > bounds.jsonl`: load_bounds bounds.jsonl TIME prints each clip's
-// box then. Fields: `cinch schema`.
+// What an engine does with `cinch bake FILE.glb --json > bounds.jsonl`: load_bounds bounds.jsonl TIME prints each
+// clip's box then. Fields: `cinch schema`.
 #include <cinch/bounds.hpp>
 #include <fstream>
 #include <iostream>
@@ -21,9 +21,10 @@ int main(int argc, char** argv)
         const nlohmann::json record = nlohmann::json::parse(line);
         if (record.value("experiment", "") != "bake" || record.value("bv", 1) != 0)
             continue; // BV 0 is the whole character
-        const auto low = record.at("min").get<std::array<double, 3>>(), high = record.at("max").get<std::array<double, 3>>();
-        clips[record.at("clip")].push_back({record.at("t0"), record.at("t1"),
-                                            {cinch::Vec3(low.data()), cinch::Vec3(high.data())}});
+        const auto low = record.at("min").get<std::array<double, 3>>(),
+                   high = record.at("max").get<std::array<double, 3>>();
+        clips[record.at("clip")].push_back(
+            {record.at("t0"), record.at("t1"), {cinch::Vec3(low.data()), cinch::Vec3(high.data())}});
     }
     for (const auto& [name, intervals] : clips)
         for (const Interval& i : intervals)

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <random>
 
-#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
 #include "tests/surface/gltf_example.hpp"
@@ -354,55 +353,4 @@ TEST_CASE("pointers at nodes are channels, those at materials are nothing, all o
           "/nodes/x/rotation", "/nodes", "/extensions/ACME_wobble/force", "/accessors/0/count"})
         CHECK_THAT(refusal(with(pointer).text()), Catch::Contains(std::string("the animation of ") + pointer));
     CHECK_THAT(refusal(with("/nodes/99/rotation").text()), Catch::Contains("nodes[99] does not exist"));
-}
-
-TEST_CASE("a node with a matrix that is animated moves as its translation, rotation and scale do")
-{
-    std::mt19937 random(2);
-    auto uniform = [&](double low, double high) { return std::uniform_real_distribution<>(low, high)(random); };
-    for (std::size_t i = 0; i < share_of(300); ++i) {
-        Eigen::Quaterniond q(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
-        q.normalize();
-        const Vec3 t(uniform(-5, 5), uniform(-5, 5), uniform(-5, 5)),
-            s(uniform(0.1, 10), uniform(0.1, 10), uniform(0.1, 10));
-        Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
-        m.topLeftCorner<3, 3>() = q.toRotationMatrix() * s.asDiagonal();
-        m.topRightCorner<3, 1>() = t;
-        const char* path = i % 3 == 0 ? "translation" : i % 3 == 1 ? "rotation" : "scale";
-        Document apart = triangle(), matrix = triangle();
-        apart.root["nodes"][1] = {{"translation", {t[0], t[1], t[2]}},
-                                  {"rotation", {q.x(), q.y(), q.z(), q.w()}},
-                                  {"scale", {s[0], s[1], s[2]}}};
-        std::vector<float> columns;
-        for (int k = 0; k < 16; ++k)
-            columns.push_back(static_cast<float>(m.data()[k]));
-        matrix.root["nodes"][1] = {{"matrix", columns}};
-        for (Document* d : {&apart, &matrix})
-            d->animate("a", path, "LINEAR", {0, 1},
-                       i % 3 == 1 ? std::vector<float>{0, 0, 0, 1, 0.6f, 0, 0, 0.8f}
-                                  : std::vector<float>{1, 2, 3, 3, 2, 2},
-                       i % 3 == 1 ? 4 : 3);
-        const Character a = apart.parse(), b = matrix.parse();
-        for (const double time : {0.0, 0.5, 1.0})
-            for (int axis = 0; axis < 3; ++axis) {
-                CHECK(box_at(a, a.animations[0], time).low[axis] ==
-                      Approx(box_at(b, b.animations[0], time).low[axis]).margin(1e-4));
-                CHECK(box_at(a, a.animations[0], time).high[axis] ==
-                      Approx(box_at(b, b.animations[0], time).high[axis]).margin(1e-4));
-            }
-    }
-    for (const auto& [entry, value] : {std::pair(4, 0.5), {0, -1.0}, {10, 0.0}}) { // a shear, a mirror, a scale of 0
-        Document d = triangle();
-        std::vector<double> m{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 1, 0, 1};
-        m[static_cast<std::size_t>(entry)] = value;
-        d.root["nodes"][1] = {{"matrix", m}};
-        CHECK(refusal(d.text()) == ""); // at rest it is a matrix like any other
-        d.animate("a", "scale", "LINEAR", {0, 1}, {1, 1, 1, 2, 2, 2}, 3);
-        CHECK_THAT(
-            refusal(d.text()),
-            Catch::Contains("the animation of a node whose matrix is no translation, rotation and scale (nodes[1])"));
-    }
-    Document d = triangle();
-    d.root["nodes"][1] = {{"matrix", {1, 0, 0, 0.1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 1, 0, 1}}};
-    CHECK_THAT(refusal(d.text()), Catch::Contains("last row is not (0, 0, 0, 1)"));
 }

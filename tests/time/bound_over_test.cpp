@@ -155,7 +155,7 @@ TEST_CASE("a support that a vertex passes at one moment is refuted there")
             double reach = -HUGE_VAL; // then, or just before, where a curve jumps then
             for (const double t : {verdict.worst->time_s, std::nextafter(verdict.worst->time_s, -HUGE_VAL)}) {
                 const Vec3 then = evaluate_vertex(rest_at(subject, motion, t)[verdict.worst->vertex],
-                                                   subject.surface.weights.of(verdict.worst->vertex), motion.at(t));
+                                                  subject.surface.weights.of(verdict.worst->vertex), motion.at(t));
                 reach = std::max(reach, (d % 2 ? -1 : 1) * then[static_cast<int>(d / 2)]);
             }
             CHECK(reach >= verdict.worst->at_least - 1e-6 * size);

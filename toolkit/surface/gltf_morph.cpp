@@ -32,7 +32,8 @@ GltfMorph read_morph(const GltfValue& node, std::size_t node_index, const GltfVa
     morph.mesh = node["mesh"].index();
     const GltfValue primitives = mesh["primitives"];
     for (std::size_t p = 0; p < primitives.size(); ++p)
-        if (const auto targets = primitives[p].find("targets"); targets && primitives[p]["attributes"].has("POSITION")) {
+        if (const auto targets = primitives[p].find("targets");
+            targets && primitives[p]["attributes"].has("POSITION")) {
             morph.targets = std::max(morph.targets, targets->size());
             morph.moves.resize(morph.targets, 0);
             for (std::size_t t = 0; t < targets->size(); ++t)

@@ -216,9 +216,9 @@ BonePath::BonePath(const Bone& bone, const std::vector<const Curve*>& curves, do
         matrix_norm_ = std::sqrt(std::max(squared.eigenvalues()[2], 0.0)) + 0x1p-40 * matrix_magnitude_;
     }
     for (const Curve* curve : curves) {
-        const CurvePiece piece = piece_of(
-            curve->time_s, curve->interpolation,
-            end_s ? end_of(curve->time_s, curve->interpolation, middle_s, *end_s) : middle_s);
+        const CurvePiece piece =
+            piece_of(curve->time_s, curve->interpolation,
+                     end_s ? end_of(curve->time_s, curve->interpolation, middle_s, *end_s) : middle_s);
         const double key_s = curve->time_s[piece.key],
                      length_s = piece.constant ? 0 : curve->time_s[piece.key + 1] - key_s;
         switch (curve->target) {

@@ -76,7 +76,8 @@ TimeCost bound_over(IntervalRefitter& refit, const TimedMotion& motion, double a
         open.clear();
         for (const auto& [piece, bounds] : doubtful) {
             const double middle = piece.first_s + (piece.last_s - piece.first_s) / 2;
-            if (piece.halvings < most_halvings && cost.intervals + open.size() < most_intervals && middle > piece.first_s && middle < piece.last_s &&
+            if (piece.halvings < most_halvings && cost.intervals + open.size() < most_intervals &&
+                middle > piece.first_s && middle < piece.last_s &&
                 !is_near(bounds, [&](std::size_t d) { return instant[d]; })) {
                 open.push_back({piece.first_s, middle, piece.halvings + 1});
                 open.push_back({middle, piece.last_s, piece.halvings + 1});

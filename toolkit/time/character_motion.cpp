@@ -79,8 +79,7 @@ AffineMap joint_map(const World& g, std::size_t k, const AffineMap& bind)
 
 class CharacterMotion {
 public:
-    CharacterMotion(const Character& character, const Character::Animation& animation,
-                    const DeformableSurface& surface)
+    CharacterMotion(const Character& character, const Character::Animation& animation, const DeformableSurface& surface)
         : file_(character.file), name_(animation.name), bones_(character.bones), joints_(character.joints),
           curves_(animation.curves), curves_of_(bones_.size()), reach_(reaches(surface))
     {

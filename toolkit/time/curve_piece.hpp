@@ -23,8 +23,8 @@ inline CurvePiece piece_of(std::span<const double> time_s, Curve::Interpolation 
     return {key, next == time_s.end() || interpolation == Curve::Interpolation::step};
 }
 
-/// The time whose piece gives a curve's value at the end of an interval about `middle_s`: the end itself where the curve
-/// does not jump there, so that the next interval begins with the same bits; else the middle.
+/// The time whose piece gives a curve's value at the end of an interval about `middle_s`: the end itself where the
+/// curve does not jump there, so that the next interval begins with the same bits; else the middle.
 inline double end_of(std::span<const double> time_s, Curve::Interpolation interpolation, double middle_s, double end_s)
 {
     const auto [first, last] = std::equal_range(time_s.begin(), time_s.end(), end_s);
@@ -33,9 +33,8 @@ inline double end_of(std::span<const double> time_s, Curve::Interpolation interp
 
 /// The piece as a polynomial of the time since its key; LINEAR and CUBICSPLINE of the glTF specification, appendix C.
 /// `value(i)`: the curve's i-th, tangents counted.
-template <std::size_t N, class F>
-Polynomial<N> polynomial_of(std::span<const double> time_s, Curve::Interpolation interpolation,
-                            const CurvePiece& piece, F&& value)
+template <std::size_t N, class F> Polynomial<N>
+polynomial_of(std::span<const double> time_s, Curve::Interpolation interpolation, const CurvePiece& piece, F&& value)
 {
     const bool cubic = interpolation == Curve::Interpolation::cubic_spline;
     const std::size_t k = piece.key;
@@ -69,9 +68,8 @@ template <class Path> struct Since {
 
 /// Suprema on [a, b] of `size` of derivatives 0 to 3, rounded up, and what derivatives 0 to 2 are rounded against.
 /// `size` of a path on [0, 1]: at least its greatest value there, but for rounding.
-template <std::size_t N, class F>
-void suprema(const Since<Polynomial<N>>& of, double a_s, double b_s, F&& size, std::array<double, 4>& sup,
-             std::array<double, 3>& magnitude)
+template <std::size_t N, class F> void suprema(const Since<Polynomial<N>>& of, double a_s, double b_s, F&& size,
+                                               std::array<double, 4>& sup, std::array<double, 3>& magnitude)
 {
     // Rounded sums and products of non-negative terms, a few hundred of them at most: 2^-40 covers them.
     constexpr double rounded_up = 1 + 0x1p-40;

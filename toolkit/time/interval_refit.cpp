@@ -71,8 +71,7 @@ IntervalRefitter::IntervalRefitter(const Bvh& bvh, const DeformableSurface& surf
     bend_.resize(count);
 }
 
-void IntervalRefitter::at(std::span<const AffineMap> maps, std::span<const double> weights,
-                          std::span<double> supports)
+void IntervalRefitter::at(std::span<const AffineMap> maps, std::span<const double> weights, std::span<double> supports)
 {
     refit_(maps, supports);
     if (const MorphBoxes::Term term{weights, maps}; !weights.empty())
@@ -107,8 +106,8 @@ void IntervalRefitter::operator()(const MotionInterval& motion, std::span<double
     const auto k = static_cast<std::size_t>(kdop_);
     std::array<double, 13> norm; // of the axes; the first three are those of the coordinates, of length 1
     for (std::size_t a = 0; a < axes.size(); ++a)
-        norm[a] = succ(std::sqrt(static_cast<double>(axes[a][0] * axes[a][0] + axes[a][1] * axes[a][1] +
-                                                     axes[a][2] * axes[a][2])));
+        norm[a] = succ(std::sqrt(
+            static_cast<double>(axes[a][0] * axes[a][0] + axes[a][1] * axes[a][1] + axes[a][2] * axes[a][2])));
     for (std::size_t i = 0; i < bvh_.bvs.size(); ++i) {
         const RestBv bv = bvh_.rest(i);
         // The greatest of each limit, and the mean of the remainder, which alone decides where all is well.
@@ -122,9 +121,8 @@ void IntervalRefitter::operator()(const MotionInterval& motion, std::span<double
         }
         // Evaluation of a vertex of n influences rounds by (n + 8)u of what `error`, at least 2⁻⁴² of it, stands for.
         // So do displacements by (m + n + 16)u of four times it, m the targets; see MorphBoxes.
-        const double evaluation =
-            1 + bv.vertex_influences / 256.0 +
-            (morph.empty() ? 0 : static_cast<double>(morphs_.count(i) + bv.node.size()) / 256);
+        const double evaluation = 1 + bv.vertex_influences / 256.0 +
+                                  (morph.empty() ? 0 : static_cast<double>(morphs_.count(i) + bv.node.size()) / 256);
         const double remainder = greatest_mean(bv, [&](std::size_t j) { return motion.limits[bv.node[j]].remainder; }) +
                                  most.bend_error * evaluation,
                      bump = most.bump, path = most.path, error = most.error * evaluation;

@@ -14,7 +14,8 @@ namespace cinch {
 /// the parabola (1 − τ)F_a + τF_b + 4τ(1 − τ)s, whose greatest value is the bound: max(F_a, F_b) where the chord is
 /// steep, else (F_a + F_b)/2 + s + (F_b − F_a)²/(16 s). s: the support of the bend over the BV plus a remainder, or
 /// the bump, whichever is less; and from the path's length (F_a + F_b + L)/2 and min(F_a, F_b) + L. What morph
-/// targets add to F_a, F_b and the bend are supports of their own (MorphBoxes). No BV reaches farther than its children.
+/// targets add to F_a, F_b and the bend are supports of their own (MorphBoxes). No BV reaches farther than its
+/// children.
 class IntervalRefitter {
 public:
     /// Surface and BVH must stay as they are, and alive. Throws std::invalid_argument for a k that is none.

@@ -27,8 +27,8 @@ public:
 
 private:
     const Bvh& bvh_;
-    std::vector<std::uint32_t> row_{0};  // a BV's entries
-    std::vector<std::uint32_t> target_;  // of each entry
+    std::vector<std::uint32_t> row_{0}; // a BV's entries
+    std::vector<std::uint32_t> target_; // of each entry
     std::vector<Vec3> centre_, half_;
 };
 

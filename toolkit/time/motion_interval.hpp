@@ -42,7 +42,7 @@ struct TimedMotion {
     std::string name;         ///< of the clip
     std::vector<double> keys; ///< ascending, each once: the times at which something may turn, the
                               ///< first and the last time among them
-    std::function<std::vector<AffineMap>(double)> at;  ///< T_j(t), computed
+    std::function<std::vector<AffineMap>(double)> at;   ///< T_j(t), computed
     std::function<std::vector<double>(double)> weights; ///< of morph targets, computed; none where they move nothing
     /// Of an interval without a key strictly inside. At a key where a curve jumps, the interval's own value counts.
     std::function<MotionInterval(double, double)> over;

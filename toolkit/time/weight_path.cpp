@@ -10,9 +10,9 @@ WeightPath::WeightPath(const std::vector<double>& still, const std::vector<Weigh
     for (const double weight : still)
         path_.push_back({0, 0, Polynomial<1>{{{weight}}}});
     for (const WeightCurve& curve : curves) {
-        const CurvePiece piece = piece_of(
-            curve.time_s, curve.interpolation,
-            end_s ? end_of(curve.time_s, curve.interpolation, middle_s, *end_s) : middle_s);
+        const CurvePiece piece =
+            piece_of(curve.time_s, curve.interpolation,
+                     end_s ? end_of(curve.time_s, curve.interpolation, middle_s, *end_s) : middle_s);
         const double key_s = curve.time_s[piece.key],
                      length_s = piece.constant ? 0 : curve.time_s[piece.key + 1] - key_s;
         for (std::size_t i = 0; i < curve.count; ++i)
@@ -37,8 +37,7 @@ std::vector<WeightPath::Limits> WeightPath::over(double a_s, double b_s) const
     std::vector<Limits> out(path_.size());
     for (std::size_t i = 0; i < path_.size(); ++i)
         suprema(
-            path_[i], a_s, b_s, [](const Polynomial<1>& p) { return p.greatest_norm(); }, out[i].sup,
-            out[i].magnitude);
+            path_[i], a_s, b_s, [](const Polynomial<1>& p) { return p.greatest_norm(); }, out[i].sup, out[i].magnitude);
     return out;
 }
 

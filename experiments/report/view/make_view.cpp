@@ -288,21 +288,6 @@ Json shown_first(const ViewRequest& request, std::size_t frames, std::size_t lev
             {"elevation", request.elevation}};
 }
 
-// The bodies with clips as functions of time, and frames of them.
-Inputs with_all_times(InputOptions what, std::size_t frames, std::vector<TimedBody>& timed)
-{
-    what.frames = 0;
-    what.first_frame = false;
-    timed = load_timed(what);
-    Inputs out{what.input, {}, {}};
-    for (TimedBody& body : timed) {
-        body.clips.resize(1); // the first, or the one that was asked for
-        out.bodies.push_back(with_frames(body, frames));
-        out.report.insert(out.report.end(), body.input.report.begin(), body.input.report.end());
-    }
-    return out;
-}
-
 void require_valid(const ViewRequest& request)
 {
     if (request.frames < 1 || request.levels < 1 || request.bits < 8 || request.bits > 16 || !is_kdop(request.kdop) ||
@@ -329,8 +314,8 @@ nlohmann::ordered_json make_view(const ViewRequest& request)
     what.transforms = request.transforms;
     what.clip = request.clip;
     std::vector<TimedBody> timed;
-    const Inputs inputs = request.swept ? with_all_times(what, request.frames, timed)
-                                        : or_leave([what] { return load_inputs(what); });
+    const Inputs inputs =
+        request.swept ? with_all_times(what, request.frames, timed) : or_leave([what] { return load_inputs(what); });
     const bool morphs = std::any_of(timed.begin(), timed.end(),
                                     [](const TimedBody& body) { return bool(body.clips.front().motion.weights); });
     // Bounds of single frames know of no morph targets.
@@ -401,45 +386,6 @@ nlohmann::ordered_json make_view(const ViewRequest& request)
                             {"count", found.triangles_in_frame},
                             {"triangles", pack(found.triangle, 1, found.triangle.size(), 1)}};
     return view;
-}
-
-std::vector<ViewRequest> report_views()
-{
-    ViewRequest brain;
-    brain.scene = "brain-pull";
-    brain.title = "Fig. 1: a brain, pulled";
-    brain.text = "30,000 vertices follow 509 simulation nodes. The outer box is the bound, in time linear in the "
-                 "nodes; the inner one is the vertices' own. "
-                 "Deeper levels have smaller boxes, and more axes make k-DOPs of them.";
-    brain.levels = 7;
-    brain.kdop = 26;
-    brain.bits = 14;
-    brain.level = 0;
-    brain.time = 0.6; // the pull is at its end
-    brain.surface = "glass";
-    brain.show_nodes = true;
-    brain.azimuth = -55; // the pull goes to the right
-    brain.elevation = 14;
-    ViewRequest ring;
-    ring.scene = "santa-ring-6";
-    ring.title = "Fig. 6: six bodies on a ring";
-    ring.text = "A ring that swings holds them at their tops. Triangles that intersect are red.";
-    ring.levels = 5;
-    ring.kdop = 14;
-    ring.bits = 14;
-    ring.level = 1;
-    ring.time = 0.55;
-    ViewRequest fishes;
-    fishes.scene = "fishes";
-    fishes.title = "Fig. 7: 24 fish";
-    fishes.text = "They have 192,000 vertices that follow 2,304 simulation nodes. Triangles that intersect are red.";
-    fishes.frames = 24;
-    fishes.levels = 5;
-    fishes.bits = 14;
-    fishes.methods = {Method::best, Method::limited, Method::eq12, Method::sphere, Method::convex};
-    fishes.level = 0;
-    fishes.elevation = 45;
-    return {brain, ring, fishes};
 }
 
 } // namespace cinch

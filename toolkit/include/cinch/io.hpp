@@ -65,7 +65,8 @@ struct WeightCurve {
     std::uint32_t count = 0;        ///< of them
     Curve::Interpolation interpolation = Curve::Interpolation::linear; ///< of its keys
     std::vector<double> time_s; ///< ascending; of keys at the same time the last one holds from then on
-    std::vector<double> value;  ///< `count` per key, or for a cubic spline 3 × `count`: in-tangents, values, out-tangents
+    std::vector<double>
+        value; ///< `count` per key, or for a cubic spline 3 × `count`: in-tangents, values, out-tangents
 };
 
 /// A node of the glTF scene graph that moves joints.
@@ -94,15 +95,15 @@ enum class Morphs { missing, read };
 /// with equal position, weights and displacements are one vertex (glTF splits them where normals or texture coordinates
 /// differ), and a mesh that is drawn twice by the same skin, which puts it at the same place, is there once.
 struct Character {
-    std::string file;          ///< for messages
-    TriangleMesh mesh;         ///< in bind pose
-    Influences influences;     ///< simulation node j is joints[j]
-    std::vector<Joint> joints; ///< of all skins, then one for each mesh without a skin
+    std::string file;                   ///< for messages
+    TriangleMesh mesh;                  ///< in bind pose
+    Influences influences;              ///< simulation node j is joints[j]
+    std::vector<Joint> joints;          ///< of all skins, then one for each mesh without a skin
     std::size_t skins = 0, carried = 0; ///< of which it is made: skins, and meshes without one. Each has a rest space
                                         ///< of its own
     std::vector<MorphTarget> targets;   ///< with Morphs::read
     std::vector<double> target_weights; ///< of the file, where no animation sets them
-    std::vector<Bone> bones;   ///< joints and what moves them; parents come first
+    std::vector<Bone> bones;            ///< joints and what moves them; parents come first
     /// One of the file's.
     struct Animation {
         std::string name;                 ///< unique, printable; "anim0", "anim1", ... where the file gives none

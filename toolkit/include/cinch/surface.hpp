@@ -113,11 +113,10 @@ Weights to_dyadic(const Influences& influences, WeightReport* report = nullptr);
 
 /// A surface in rest state with the weights that deform it: weights.vertex_count() == mesh.vertices.size().
 struct DeformableSurface {
-    TriangleMesh mesh; ///< at rest
-    Weights weights;   ///< of each of its vertices
-    std::vector<Vec3>
-        layout{}; ///< where its vertices stand when triangles are grouped, for parts with rest spaces of their own;
-                  ///< empty: at rest. No bound depends on it, only how tight they are
+    TriangleMesh mesh;          ///< at rest
+    Weights weights;            ///< of each of its vertices
+    std::vector<Vec3> layout{}; ///< where its vertices stand when triangles are grouped, for parts with rest spaces of
+                                ///< their own; empty: at rest. No bound depends on it, only how tight they are
 };
 
 /// Displacements d_i of some rest vertices. With weights a, a surface's vertices at rest are v⁰ + Σ_i a_i d_i, before
