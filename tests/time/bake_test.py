@@ -265,8 +265,7 @@ def face(folder, name="face.gltf"):
     targets = [{"POSITION": open_}, {"POSITION": smile}, {"POSITION": puff}]
     times, later = make.add([(0.0,), (0.5,), (1.25,)], "SCALAR"), make.add([(0.2,), (0.9,)], "SCALAR")
     linear = make.add([(w,) for w in (0, 0, 0, 1, -0.5, 0.2, 0.3, 1, 2)], "SCALAR")
-    cubic = make.add([(w,) for k in ((0, 0, 0), (0, 0.5, 0), (3, -2, 1), (-4, 0, 2), (1, 0, 0.7), (0, 0, 0)) for w in k],
-                     "SCALAR")
+    cubic = make.add([(w,) for w in (0, 0, 0, 0, 0.5, 0, 3, -2, 1, -4, 0, 2, 1, 0, 0.7, 0, 0, 0)], "SCALAR")
     step = make.add([(w,) for w in (0.1, 0, 1, 0.9, 1, -1)], "SCALAR")
     nod = make.add([turn(0), turn(1.2), turn(-0.7)], "VEC4")
     shrink = make.add([(1, 1, 1), (2, 0.5, 1), (0, 0, 0)], "VEC3")
@@ -286,7 +285,8 @@ def face(folder, name="face.gltf"):
                   {"mesh": 1, "translation": [0, 1, 1], "rotation": [0.5, 0.5, 0.5, 0.5]},
                   {"mesh": 2, "matrix": [0, 2, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 3, 0, 0, 1]}],
         "meshes": [{"primitives": [{**skinned, "targets": targets}]}, {"primitives": [plain]},
-                   {"primitives": [{**plain, "targets": [{"NORMAL": open_}, {"POSITION": puff}]}], "weights": [1, 0.5]}],
+                   {"primitives": [{**plain, "targets": [{"NORMAL": open_}, {"POSITION": puff}]}],
+                    "weights": [1, 0.5]}],
         "skins": [{"joints": [0, 1], "inverseBindMatrices": binds}],
         "animations": [{"name": "talk", "samplers": samplers, "channels": [
             {"sampler": 0, "target": {"node": 2, "path": "weights"}},
