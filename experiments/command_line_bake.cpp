@@ -65,7 +65,7 @@ Examples:
   cinch bake robot.glb --level -1 --prove    and an exact proof of each
   cinch bake robot.glb --report              how tight, and what frames miss
 
-Exit status: 0 done, 1 a bound refuted, 2 bad usage or input, 130 interrupted
+Exit status: 0 done, 1 a bound not proven, 2 bad usage or input, 130 interrupted
 (files are not written).)");
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/input.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <mutex>
@@ -158,10 +159,13 @@ void load_character(Input& input, const InputOptions& options)
         rest ? character.rest : choose_clip(character.animations, options.clip, options.input);
     input.missing = character.missing;
     input.missing.insert(input.missing.end(), animation.missing.begin(), animation.missing.end());
+    const bool morphs = std::any_of(input.missing.begin(), input.missing.end(),
+                                    [](const std::string& what) { return what.starts_with("morph targets"); });
     if (!input.missing.empty() && !options.partial)
         throw InputError::in_file(
             options.input,
-            fmt::format("has {}; --partial bounds the rest, and every result says so", not_modelled(input.missing)));
+            fmt::format("has {}; {}--partial bounds the rest, and every result says so", not_modelled(input.missing),
+                        morphs ? "'cinch bake', 'verify --times all' and 'view --swept' have them; " : ""));
     const Clip clip = sample(character, animation, options.fps > 0 ? options.fps : 30);
     constexpr std::size_t most_frames =
         1'000'000; // of which nobody waits for the end; a choice among more is no trouble

@@ -148,7 +148,7 @@ int bake(const BakeOptions& options)
     output.finish();
     if (words && options.prove)
         fmt::print("{}\n", verdict_line(verdict));
-    return verdict.violated ? 1 : 0;
+    return verdict.violated || verdict.undecided ? 1 : 0;
 }
 
 } // namespace cinch

@@ -26,7 +26,7 @@ struct BakeOptions {
     TimeSabotage sabotage = TimeSabotage::none;
 };
 
-/// Bounds of every BV for all times of clips, written down. Returns the exit status: 0 done, 1 a bound is refuted.
+/// Bounds of every BV for all times of clips, written down. Returns the exit status: 0 done, 1 a bound is not proven.
 int bake(const BakeOptions& options);
 
 } // namespace cinch

@@ -89,7 +89,7 @@ int verify_all_times(const VerifyOptions& options)
     output.finish();
     if (words)
         fmt::print("{}{}{}\n", verdict_line(all), partial_mark(missing), stopped ? "; interrupted" : "");
-    return all.violated ? 1 : stopped ? interrupt_status() : 0;
+    return all.violated || all.undecided ? 1 : stopped ? interrupt_status() : 0;
 }
 
 } // namespace cinch

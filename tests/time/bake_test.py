@@ -379,6 +379,10 @@ with tempfile.TemporaryDirectory() as folder:
                 assert all(float(x) > y for x, y in zip(high.split(","), row["max"])), row
     shape_ = subprocess.run([program, "bake", "fish", "--whole"], capture_output=True, text=True, timeout=120)
     assert shape_.returncode == 0 and "(" in shape_.stdout, shape_.stderr
+    # What is interpolated between frames is proven too.
+    frames = ["bake", "fish", "--whole", "--leaf", "64", "--level", "-1", "--prove"]
+    right = subprocess.run([program, *frames], capture_output=True, text=True)
+    assert right.returncode == 0 and ", 0 violated\n" in right.stdout, right.stdout + right.stderr
 skins = os.path.join(shared, "meshes", "skin")
 if os.path.isdir(skins):
     for name in sorted(os.listdir(skins)):

@@ -117,6 +117,48 @@ TEST_CASE("bounds over time hold at all times, and whatever is dropped from them
         CHECK(dropped[kind] > test::share_of(120) / 4);
 }
 
+TEST_CASE("frames that are interpolated are proven between them, and a frame left out is found")
+{
+    Random random(19);
+    std::size_t found = 0;
+    constexpr std::size_t cases = 20;
+    for (std::size_t i = 0; i < cases; ++i) {
+        TimeCase subject = draw_time_case(random());
+        subject.character.targets.clear(); // frames have none
+        subject.character.target_weights.clear();
+        subject.character.rest.morphs.clear();
+        const TimedMotion curves = character_motion(subject.character, subject.character.rest, subject.surface);
+        auto frames = [&](std::vector<double> times) {
+            return Clip(
+                "frames", times.size(), [times](std::size_t f) { return times[f]; },
+                [times, &curves](std::size_t f) { return curves.at(times[f]); });
+        };
+        const Clip whole = frames({-0.2, 0.1, 0.3, 0.9, 1.4}), part = frames({-0.2, 0.1, 0.9, 1.4});
+        const exact::LinearEnclosure enclosure(whole);
+        const exact::TimeChecker check(subject.surface, subject.bvh, enclosure, {}, 6, [] {});
+        for (const Clip* bounded : {&whole, &part}) {
+            const TimedMotion motion = linear_motion(*bounded, subject.surface);
+            IntervalRefitter refit(subject.bvh, subject.surface, {});
+            std::vector<double> supports(subject.bvh.bvs.size() * 6);
+            bound_over(refit, motion, -0.2, 1.4, 0.01, supports);
+            const exact::TimeVerdict verdict = check(-0.2, 1.4, supports);
+            if (bounded == &whole)
+                CHECK(verdict.proven() == verdict.bounds);
+            else
+                found += verdict.violated > 0;
+        }
+    }
+    CHECK(found > cases / 2);
+}
+
+TEST_CASE("two keys nearly half a turn apart are decided")
+{
+    const TimeCase subject = draw_time_case(6156331518490970231u);
+    const TimedMotion motion = character_motion(subject.character, subject.character.rest, subject.surface);
+    const exact::TimeVerdict verdict = verdict_on(subject, motion, {.kdop = 14, .precision = Precision::float64}, 0.01);
+    CHECK(verdict.proven() == verdict.bounds);
+}
+
 TEST_CASE("a support that a vertex passes at one moment is refuted there")
 {
     Random random(5);
