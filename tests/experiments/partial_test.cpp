@@ -57,7 +57,8 @@ TEST_CASE("what is not modelled is refused by every command, and what is bounded
         CHECK(refused.status == 2);
         CHECK(refused.out.empty());
         CHECK(refused.err == "cinch: " + file + ": has what is not modelled: " + morph +
-                                 "; --partial bounds the rest, and every result says so\n");
+                                 "; 'cinch bake', 'verify --times all' and 'view --swept' have them; --partial bounds "
+                                 "the rest, and every result says so\n");
 
         const test::Run records = test::cinch(command + " --partial --json");
         CHECK(records.status == 0);

@@ -99,8 +99,8 @@ struct Character {
     TriangleMesh mesh;                  ///< in bind pose
     Influences influences;              ///< simulation node j is joints[j]
     std::vector<Joint> joints;          ///< of all skins, then one for each mesh without a skin
-    std::size_t skins = 0, carried = 0; ///< of which it is made: skins, and meshes without one. Each has a rest space
-                                        ///< of its own
+    std::size_t skins = 0;              ///< of which it is made; each has a rest space of its own,
+    std::size_t carried = 0;            ///< as has each mesh without one, of which there are these
     std::vector<MorphTarget> targets;   ///< with Morphs::read
     std::vector<double> target_weights; ///< of the file, where no animation sets them
     std::vector<Bone> bones;            ///< joints and what moves them; parents come first
