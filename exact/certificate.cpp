@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exact/certificate.hpp"
 
-#include <charconv>
 #include <cmath>
 #include <stdexcept>
 
-#include <nlohmann/json.hpp>
-
+#include "exact/certificate_lines.hpp"
 #include "exact/sha256.hpp"
 
 namespace cinch::exact {
@@ -14,102 +12,8 @@ namespace {
 
 constexpr std::string_view format = "cinch 2";
 
-std::string escaped(const std::string& text)
-{
-    return nlohmann::json(text).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
-}
-
-/// Builds one line of JSON in a buffer that is reused.
-class Line {
-public:
-    explicit Line(LineSink sink) : sink_(std::move(sink)) {}
-
-    Line& raw(std::string_view text)
-    {
-        text_ += text;
-        return *this;
-    }
-    Line& integer(std::size_t value) { return raw(std::to_string(value)); }
-    Line& text(const std::string& value) { return raw(escaped(value)); }
-    Line& number(double value) // "0x1.8p+0"; std::to_chars leaves out 0x
-    {
-        text_ += '"';
-        if (std::signbit(value)) {
-            text_ += '-';
-            value = -value;
-        }
-        if (std::isfinite(value))
-            text_ += "0x";
-        char digits[32];
-        text_.append(digits, std::to_chars(digits, digits + sizeof digits, value, std::chars_format::hex).ptr);
-        text_ += '"';
-        return *this;
-    }
-    template <class Range, class Write> Line& array(const Range& range, Write&& write)
-    {
-        text_ += '[';
-        bool first = true;
-        for (const auto& item : range) {
-            if (!first)
-                text_ += ',';
-            first = false;
-            write(item);
-        }
-        text_ += ']';
-        return *this;
-    }
-    Line& numbers(std::span<const double> values)
-    {
-        return array(values, [&](double x) { number(x); });
-    }
-    Line& integers(std::span<const std::uint32_t> values)
-    {
-        return array(values, [&](std::uint32_t x) { integer(x); });
-    }
-    void end()
-    {
-        sink_(text_);
-        text_.clear();
-    }
-
-private:
-    LineSink sink_;
-    std::string text_;
-};
-
-std::string hash_of_positions(const DeformableSurface& surface)
-{
-    Sha256 hash;
-    for (const Vec3& v : surface.mesh.vertices)
-        hash.add(std::span<const double>(v.data(), 3));
-    return hash.hex();
-}
-
-std::string hash_of_triangles(const DeformableSurface& surface)
-{
-    Sha256 hash;
-    for (const Triangle& t : surface.mesh.triangles)
-        hash.add(std::span<const std::uint32_t>(t));
-    return hash.hex();
-}
-
-std::string hash_of_weights(const DeformableSurface& surface)
-{
-    Sha256 hash;
-    for (std::size_t k = 0; k < surface.mesh.vertices.size(); ++k) {
-        const Weights::Row row = surface.weights.of(k);
-        hash.add(static_cast<std::uint32_t>(row.node.size()));
-        hash.add(row.node);
-        hash.add(row.weight);
-    }
-    return hash.hex();
-}
-
 std::string hash_of_method(const Claim& claim, std::string_view shape)
 {
-    auto as_shown = [](const std::string& text) { // valid UTF-8
-        return nlohmann::json::parse(escaped(text)).get<std::string>();
-    };
     Sha256 hash;
     hash.add_text(format);
     hash.add_text(name_of(claim.methods));
@@ -150,26 +54,9 @@ void write_surface(const DeformableSurface& surface, const Bvh& bvh, const Claim
     line.raw(",\"frames\":").integer(claim.frames).raw(",\"clip\":").text(claim.clip);
     line.raw(claim.missing.empty() ? ",\"partial\":false" : ",\"partial\":true").raw(",\"missing\":");
     line.array(claim.missing, [&](const std::string& part) { line.text(part); });
-    line.raw(",\"sha256\":{\"positions\":\"").raw(hash_of_positions(surface));
-    line.raw("\",\"triangles\":\"").raw(hash_of_triangles(surface));
-    line.raw("\",\"weights\":\"").raw(hash_of_weights(surface));
-    line.raw("\",\"method\":\"").raw(hash_of_method(claim, shape)).raw("\"}}").end();
-    for (std::size_t k = 0; k < surface.mesh.vertices.size(); ++k) {
-        const Weights::Row row = surface.weights.of(k);
-        line.raw("{\"vertex\":").integer(k).raw(",\"rest\":").numbers({surface.mesh.vertices[k].data(), 3});
-        line.raw(",\"nodes\":").integers(row.node).raw(",\"weights\":").numbers(row.weight).raw("}").end();
-    }
-    for (std::size_t t = 0; t < surface.mesh.triangles.size(); ++t)
-        line.raw("{\"triangle\":").integer(t).raw(",\"vertices\":").integers(surface.mesh.triangles[t]).raw("}").end();
-    for (std::size_t i = 0; i < bvh.bvs.size(); ++i) {
-        const Bv& bv = bvh.bvs[i];
-        line.raw("{\"bv\":").integer(i);
-        if (bv.is_leaf())
-            line.raw(",\"triangles\":").integers(std::span(bvh.triangle).subspan(bv.first_triangle, bv.triangle_count));
-        else
-            line.raw(",\"children\":[").integer(bv.first_child).raw(",").integer(bv.first_child + 1).raw("]");
-        line.raw("}").end();
-    }
+    hash_surface(surface, hash_of_method(claim, shape), line);
+    line.raw("}").end();
+    write_body(surface, bvh, line);
 }
 
 BoundCounts write_frame(const Claim& claim, std::size_t frame, double time_s, std::span<const AffineMap> maps,

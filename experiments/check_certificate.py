@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Proves a certificate of `cinch verify --certificate FILE` again, with nothing but the Python standard library.
+"""Proves a certificate of `cinch verify` or `bake --certificate FILE` again, with nothing but the Python standard
+library.
 
 usage: check_certificate.py CERTIFICATE [--input MESH [--weights WEIGHTS --transforms TRANSFORMS]]
 
@@ -19,12 +20,18 @@ below, or +infinity, which is counted apart. All comparisons are exact: doubles 
                  that hold the BV's vertices, derived here. (Not over oriented rest boxes, nor intersected with another
                  method.)
 
-The SHA-256 of positions, triangles, weights, transforms and method must be those that the file states, so that it
-cannot be changed by accident; who changes it on purpose proves bounds of another surface. --input ties it to a mesh
-file (OBJ, OFF) that is read here: the same triangles and, double for double, the same positions, as they are or centred
-and scaled to a longest half extent of 1.2. --weights and --transforms (a skin as text) tie the rest: positions as they
-are, every weight within (n + 2) 2^-53 of the file's quotient, n the vertex's influences, and every frame one of the
-clip's, in their order, with the same doubles.
+A certificate of bounds over time (bake, verify --times all) holds the skeleton, morph targets and curves of glTF, or
+frames, instead of transforms. Its intervals follow each other from the first to the last time of each clip; for every
+real time of each, every vertex in real arithmetic lies within the bound of each BV that holds it: between two keys it
+stays below the chord through both ends plus a parabola as high as its second derivative allows, all of them enclosed
+here by intervals of whole numbers, and pieces of time that do not decide are halved.
+
+The SHA-256 of positions, triangles, weights, transforms (or all that moves) and method must be those that the file
+states, so that it cannot be changed by accident; who changes it on purpose proves bounds of another surface. --input
+ties it to a mesh file (OBJ, OFF) that is read here: the same triangles and, double for double, the same positions, as
+they are or centred and scaled to a longest half extent of 1.2. --weights and --transforms (a skin as text) tie the
+rest: positions as they are, every weight within (n + 2) 2^-53 of the file's quotient, n the vertex's influences, and
+every frame one of the clip's, in their order, with the same doubles.
 
 Exit status: 0 accepted, 1 rejected or not understood, in one line, 2 wrong usage or unreadable files of --input.
 """
@@ -39,7 +46,7 @@ import zlib
 
 sys.dont_write_bytecode = True  # this folder may be read-only
 from certificate.files import Tie, Unreadable  # noqa: E402
-from certificate.proof import Checker  # noqa: E402
+from certificate.proof import checker_of  # noqa: E402
 from certificate.records import Records  # noqa: E402
 from certificate.values import Rejected, plain, shown  # noqa: E402
 
@@ -89,7 +96,7 @@ def check(name, tie=None, progress=lambda text: None):
     try:
         with opened(name) as stream:
             records = Records(stream)
-            return Checker(records, tie, progress)
+            return checker_of(records, tie, progress)
     except Rejected as error:
         reason = str(error)
     except (OSError, EOFError, zlib.error) as error:

@@ -44,6 +44,10 @@ void add_bake(CLI::App& app, Run& run)
     option("--npz", o.npz, "write a NumPy archive")->option_text("FILE.npz");
     option("--usd", o.usd, "write a USD layer with the character's box as time samples of extent")
         ->option_text("FILE.usda");
+    option("--certificate", o.certificate,
+           "write what experiments/check_certificate.py needs to prove every bound of every BV; compressed if it ends "
+           "in .gz")
+        ->option_text("FILE");
     CLI::Option* json = command.add_flag("--json", o.output.json, "JSON Lines on standard output and nothing else");
     command.add_flag("--csv", o.output.csv, "the same as comma-separated values")->excludes(json);
     option("--sabotage", o.sabotage,
@@ -63,6 +67,7 @@ Examples:
   cinch bake robot.glb --clip Robot_Dance --interval 0.25 --npz dance.npz
   cinch bake robot.glb --usd bounds.usda     to be sublayered
   cinch bake robot.glb --level -1 --prove    and an exact proof of each
+  cinch bake robot.glb --certificate robot.jsonl.gz
   cinch bake robot.glb --report              how tight, and what frames miss
 
 Exit status: 0 done, 1 a bound not proven, 2 bad usage or input, 130 interrupted

@@ -47,7 +47,7 @@ void add_verify(CLI::App& app, Run& run)
     option(
         "--certificate", o.certificate,
         "write a proof of every bound, for experiments/check_certificate.py; compressed if it ends in .gz; with --out "
-        "a folder in DIR, of a file per frame, which 'cinch merge DIR' ends")
+        "a folder in DIR, of a file per frame, which 'cinch merge DIR' ends; with --times all over each whole clip")
         ->option_text("FILE");
     option("--vipr", o.vipr,
            "write single bounds of the last frame (first BV of each level) as VIPR files, for viprchk")

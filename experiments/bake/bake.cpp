@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/bake/bake.hpp"
 
+#include <optional>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -59,8 +61,8 @@ int bake(const BakeOptions& options)
     require_default_arithmetic();
     RecordOutput output(options.output, provenance(0, options.input.seed));
     const std::vector<TimedBody> bodies = load_timed(options.input);
-    if (bodies.size() > 1 && (!options.npz.empty() || !options.usd.empty()))
-        throw InputError("--npz and --usd hold one body; --body chooses it");
+    if (bodies.size() > 1 && (!options.npz.empty() || !options.usd.empty() || !options.certificate.empty()))
+        throw InputError("--npz, --usd and --certificate hold one body; --body chooses it");
     catch_interrupt();
     const bool words = !options.output.records_only();
     exact::TimeVerdict verdict;
@@ -76,6 +78,9 @@ int bake(const BakeOptions& options)
             IntervalRefitter refit(bvh, body.input.surface, options.bounds, body.targets());
             std::vector<std::pair<std::string, std::vector<BakedInterval>>> baked;
             std::vector<BakedFigures> figures;
+            std::optional<TimeProofFile> proof_file;
+            if (!options.certificate.empty())
+                proof_file.emplace(options.certificate, body, bvh, options.bounds.methods, options.bounds.kdop);
             Progress progress("baking clips", body.clips.size());
             for (const TimedClip& source : body.clips) {
                 const TimedMotion motion = watched(source.motion, options.sabotage);
@@ -84,6 +89,8 @@ int bake(const BakeOptions& options)
                 for (const BakedInterval& interval : intervals)
                     for (std::size_t bv = 0; bv < written; ++bv)
                         output.add(record_of(body, options, bvh, motion.name, interval, bv));
+                if (proof_file)
+                    proof_file->add(source, intervals);
                 std::string proof;
                 if (options.prove) {
                     const exact::TimeVerdict own = prove(body, source, bvh, options.bounds.kdop, intervals);
@@ -131,6 +138,8 @@ int bake(const BakeOptions& options)
             }
             if (!options.npz.empty())
                 write_npz(options.npz, bvh, written, options.bounds.kdop, baked);
+            if (proof_file)
+                proof_file->commit(verdict);
             if (!options.usd.empty())
                 write_usd(options.usd, baked);
             if (words)

@@ -19,9 +19,9 @@ struct BakeOptions {
     bool whole = false;      ///< one interval per clip
     double tolerance = 0.01; ///< of a BV's half extent
     bool prove = false;
-    bool report = false;  ///< figures beside the truth
-    int samples = 30;     ///< of the truth, between two keys
-    std::string npz, usd; ///< files to write; empty: none
+    bool report = false;               ///< figures beside the truth
+    int samples = 30;                  ///< of the truth, between two keys
+    std::string npz, usd, certificate; ///< files to write; empty: none
     OutputOptions output;
     TimeSabotage sabotage = TimeSabotage::none;
 };

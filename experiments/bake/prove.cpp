@@ -24,6 +24,33 @@ exact::TimeVerdict prove(const TimedBody& body, const TimedClip& clip, const Bvh
     return out;
 }
 
+TimeProofFile::TimeProofFile(const std::string& name, const TimedBody& body, const Bvh& bvh, Methods methods, int kdop)
+    : body_(body), file_(name),
+      writer_(body.input.surface, bvh, {methods, kdop, RestShape::aabb, "", 0, body.input.missing},
+              body.character.get(), body.clips.size(), [this](std::string_view text) {
+                  throw_if_interrupted(); // then none is written
+                  file_.line(text);
+              })
+{
+}
+
+void TimeProofFile::add(const TimedClip& clip, std::span<const BakedInterval> intervals)
+{
+    const double first_s = clip.motion.first_s(), last_s = clip.motion.last_s();
+    if (clip.animation)
+        writer_.clip(*clip.animation, first_s, last_s, intervals.size());
+    else
+        writer_.clip(body_.input.clip, first_s, last_s, intervals.size());
+    for (const BakedInterval& interval : intervals)
+        writer_.interval(interval.first_s, interval.last_s, interval.supports);
+}
+
+void TimeProofFile::commit(const exact::TimeVerdict& verdict)
+{
+    writer_.end(verdict);
+    file_.commit();
+}
+
 std::string verdict_line(const exact::TimeVerdict& verdict)
 {
     return fmt::format("{} bounds for all times, {} proven, {} violated{}", grouped(verdict.bounds),

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <optional>
+
 #include <fmt/format.h>
 
 #include "cinch/environment.hpp"
@@ -16,7 +18,6 @@ void refuse_options_of_frames(const VerifyOptions& o)
                                         {o.remember, "--remember"},
                                         {o.update != VerifiedUpdate::refit, "--update"},
                                         {!o.shards.folder.empty() || !o.shards.shard.empty(), "--out and --shard"},
-                                        {!o.certificate.empty(), "--certificate"},
                                         {!o.vipr.empty(), "--vipr"},
                                         {o.stats, "--stats"},
                                         {o.volume, "--volume"},
@@ -42,6 +43,8 @@ int verify_all_times(const VerifyOptions& options)
     bounds.bounds.passes = options.passes;
     const bool words = !options.output.records_only();
     const std::vector<TimedBody> bodies = load_timed(options.input);
+    if (bodies.size() > 1 && !options.certificate.empty())
+        throw InputError("--certificate is of one body; --body chooses it");
     catch_interrupt();
     exact::TimeVerdict all;
     std::vector<std::string> missing;
@@ -55,6 +58,9 @@ int verify_all_times(const VerifyOptions& options)
                     fmt::print("{}\n", line);
             const Bvh bvh = build_bvh(body.input.surface, options.leaf ? options.leaf : 16);
             IntervalRefitter refit(bvh, body.input.surface, bounds.bounds, body.targets());
+            std::optional<TimeProofFile> certificate;
+            if (!options.certificate.empty())
+                certificate.emplace(options.certificate, body, bvh, options.methods, options.kdop);
             Progress progress("proving clips", body.clips.size());
             for (std::size_t i = 0; i < body.clips.size(); ++i) {
                 const TimedClip& clip = body.clips[i];
@@ -63,6 +69,8 @@ int verify_all_times(const VerifyOptions& options)
                     bake_clip(refit, motion, bounds, bvh.bvs.size() * static_cast<std::size_t>(options.kdop));
                 const exact::TimeVerdict own = prove(body, clip, bvh, options.kdop, baked);
                 all.add(own);
+                if (certificate)
+                    certificate->add(clip, baked);
                 output.add({{"experiment", "verify"},
                             {"input", body.input.name},
                             {"clip", motion.name},
@@ -81,6 +89,8 @@ int verify_all_times(const VerifyOptions& options)
                                verdict_line(own), worst_line(own));
                 progress.done(i + 1);
             }
+            if (certificate)
+                certificate->commit(all);
         }
     } catch (const Interrupted&) {
         stopped = true;

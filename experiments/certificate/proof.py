@@ -7,6 +7,7 @@ import sys
 
 from certificate.records import FORMAT, HEADER, Header, hashes
 from certificate.surface import RestBounds, Surface
+from certificate.timed import HEADER as TIMED_HEADER, TimedChecker, TimedHeader
 from certificate.values import (WEIGHT_BITS, Rejected, bits_after_point, double, double_or_ratio, in_order,
                                 least_doubles, listed, plain, require, scaled, shown, whole)
 
@@ -130,14 +131,21 @@ class FrameProof:
         return total, q << (bits + WEIGHT_BITS)
 
 
+def checker_of(records, tie=None, progress=lambda text: None):
+    """Of a whole certificate, proven; raises Rejected."""
+    require(1e16 + 2.9999 == 10000000000000002.0 and sys.float_info.mant_dig == 53,
+            "this machine's floats are no IEEE doubles")
+    record = records.expect("a header", HEADER, TIMED_HEADER)
+    if record.keys() == TIMED_HEADER:
+        return TimedChecker(records, TimedHeader(record), tie, progress)
+    return Checker(records, Header(record), tie, progress)
+
+
 class Checker:
     """Reads and proves a whole certificate. `tie` compares with files of --input; see files.py."""
 
-    def __init__(self, records, tie=None, progress=lambda text: None):
-        require(1e16 + 2.9999 == 10000000000000002.0 and sys.float_info.mant_dig == 53,
-                "this machine's floats are no IEEE doubles")
-        self.records, self.tie = records, tie
-        self.header = header = Header(records.expect("a header", HEADER))
+    def __init__(self, records, header, tie=None, progress=lambda text: None):
+        self.records, self.header, self.tie = records, header, tie
         progress("surface")
         self.surface = surface = Surface(header, records)
         if tie:

@@ -75,28 +75,39 @@ class Records:
 
 
 class Header:
+    """What certificates of frames begin with; those of another format say what they have instead."""
+
+    FORMAT, COUNTS = FORMAT, tuple((name, 1) for name in ("vertices", "triangles", "nodes", "bvs", "frames"))
+
     def __init__(self, record):
-        require(record["certificate"] == FORMAT, "the format is {}, not \"{}\"", shown(record["certificate"]), FORMAT)
+        require(record["certificate"] == self.FORMAT, "the format is {}, not \"{}\"", shown(record["certificate"]),
+                self.FORMAT)
         names = text(record["method"], "method").split("+")
         require(set(names) <= set(METHODS) and len(set(names)) == len(names), "method is {}", shown(record["method"]))
-        shape = record["rest_shape"]
-        require(shape in ("aabb", "obb"), "rest_shape is {}", shown(shape))
+        self.shape(record)
         kdop = record["kdop"]
         require(type(kdop) is int and kdop in AXES, "kdop is {}", shown(kdop))
         self.axes, self.directions = AXES[kdop], kdop
-        self.duality = set(names) <= BOX_METHODS and shape == "aabb"
-        self.vertices, self.triangles, self.nodes, self.bvs, self.frames = (
-            whole(record[name], 1, MOST_INDEX, name) for name in ("vertices", "triangles", "nodes", "bvs", "frames"))
-        self.clip = text(record["clip"], "clip")
+        for name, least in self.COUNTS:
+            setattr(self, name, whole(record[name], least, MOST_INDEX, name))
         self.missing = [text(part, "a missing part") for part in listed(record["missing"], None, "missing")]
         require(type(record["partial"]) is bool and record["partial"] == bool(self.missing),
                 "partial is {}, but {} parts are missing", shown(record["partial"]), len(self.missing))
         self.sha256 = hashes(record["sha256"], HASHES)
         method = hashlib.sha256()
-        for part in (FORMAT, record["method"], shape, str(kdop), self.clip, *self.missing):
+        for part in self.hashed_texts(record):
             data = part.encode("utf-8", "surrogatepass")
             method.update(b"%d:%b" % (len(data), data))
         self.agree("method", method)
+
+    def shape(self, record):
+        shape = record["rest_shape"]
+        require(shape in ("aabb", "obb"), "rest_shape is {}", shown(shape))
+        self.duality = set(record["method"].split("+")) <= BOX_METHODS and shape == "aabb"
+
+    def hashed_texts(self, record):
+        self.clip = text(record["clip"], "clip")
+        return FORMAT, record["method"], record["rest_shape"], str(self.directions), self.clip, *self.missing
 
     def agree(self, what, found):
         require(found.hexdigest() == self.sha256[what], "the SHA-256 of the {} is another than stated", what)

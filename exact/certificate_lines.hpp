@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Internal to exact/: how certificates are written.
+#pragma once
+
+#include <charconv>
+#include <cmath>
+
+#include "exact/certificate.hpp"
+
+namespace cinch::exact {
+
+/// As a text of JSON, in ASCII; what is no UTF-8 is replaced.
+std::string escaped(const std::string& text);
+/// The text that a reader of escaped(text) has.
+std::string as_shown(const std::string& text);
+
+/// Builds one line of JSON in a buffer that is reused.
+class Line {
+public:
+    explicit Line(LineSink sink) : sink_(std::move(sink)) {}
+
+    Line& raw(std::string_view text)
+    {
+        text_ += text;
+        return *this;
+    }
+    Line& integer(std::size_t value) { return raw(std::to_string(value)); }
+    Line& text(const std::string& value) { return raw(escaped(value)); }
+    Line& number(double value) // "0x1.8p+0"; std::to_chars leaves out 0x
+    {
+        text_ += '"';
+        if (std::signbit(value)) {
+            text_ += '-';
+            value = -value;
+        }
+        if (std::isfinite(value))
+            text_ += "0x";
+        char digits[32];
+        text_.append(digits, std::to_chars(digits, digits + sizeof digits, value, std::chars_format::hex).ptr);
+        text_ += '"';
+        return *this;
+    }
+    template <class Range, class Write> Line& array(const Range& range, Write&& write)
+    {
+        text_ += '[';
+        bool first = true;
+        for (const auto& item : range) {
+            if (!first)
+                text_ += ',';
+            first = false;
+            write(item);
+        }
+        text_ += ']';
+        return *this;
+    }
+    Line& numbers(std::span<const double> values)
+    {
+        return array(values, [&](double x) { number(x); });
+    }
+    Line& integers(std::span<const std::uint32_t> values)
+    {
+        return array(values, [&](std::uint32_t x) { integer(x); });
+    }
+    void end()
+    {
+        sink_(text_);
+        text_.clear();
+    }
+
+private:
+    LineSink sink_;
+    std::string text_;
+};
+
+/// A certificate's "sha256" of positions, triangles and weights, with their names, and what follows of the method.
+void hash_surface(const DeformableSurface& surface, const std::string& method, Line& line);
+/// Its records of vertices, triangles and BVs.
+void write_body(const DeformableSurface& surface, const Bvh& bvh, Line& line);
+} // namespace cinch::exact
