@@ -134,7 +134,7 @@ Character open_character(Input& input, const InputOptions& options, Morphs morph
     refuse_options(options, false, true, true);
     if (!options.weights.empty() || !options.transforms.empty())
         throw InputError("--weights and --transforms need a mesh (OBJ, OFF, PLY, STL)");
-    return read_gltf(options.input, Coverage::partial, morphs);
+    return read_gltf(options.input, Coverage::partial, morphs, &decompression());
 }
 
 // The first lines of the load report; `motion`: the rest of the second one.

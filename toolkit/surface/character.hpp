@@ -11,7 +11,7 @@ namespace cinch {
 
 /// read_gltf on bytes in memory; `file` is for messages, and where others are named, beside it.
 Character parse_gltf(std::string_view bytes, const std::string& file, Coverage coverage = Coverage::whole,
-                     Morphs morphs = Morphs::missing);
+                     Morphs morphs = Morphs::missing, const Decompression* decoders = nullptr);
 
 /// Whether morph targets (Morphs::read) displace any vertex at any time of an animation: a weight of theirs is not 0.
 bool moves_targets(const Character& character, const Character::Animation& animation);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "toolkit/surface/gltf_compression.hpp"
 #include "toolkit/surface/text_scan.hpp"
 
 namespace cinch {
@@ -94,11 +95,13 @@ public:
         if (const std::size_t found = components_of(accessor_); found != components)
             accessor_.fail("has " + std::to_string(found) + " components, expected " + std::to_string(components));
         const std::size_t count = accessor_["count"].index();
-        if (count > document_.bytes())
+        const auto view = accessor_.index_of("bufferView");
+        const DecodedView unpacked = view ? decoded_view(document_, *view) : DecodedView{};
+        if (count > std::max<std::uintmax_t>(document_.bytes(), unpacked.bytes ? unpacked.bytes->size() : 0))
             accessor_.fail("declares " + std::to_string(count) + " elements, more than the file's buffers have bytes");
         std::vector<double> out(count * components, 0.0); // what a file gives no data for is zero
         const Component type = component_of(accessor_);
-        if (const auto view = accessor_.index_of("bufferView"))
+        if (view)
             copy(*view, accessor_.index_or("byteOffset", 0), type, normalized(), components, true, out);
         if (const auto sparse = accessor_.find("sparse"))
             substitute(*sparse, type, components, out);
@@ -135,13 +138,15 @@ private:
               bool strided, std::vector<double>& out)
     {
         const GltfValue view = document_.at("bufferViews", view_index);
-        note_extensions(view, missing_);
+        note_compressed(document_, view, missing_);
         const std::size_t buffer = view["buffer"].index();
-        note_extensions(document_.at("buffers", buffer), missing_);
-        const std::string& data = document_.buffer(buffer);
-        const std::size_t begin = view.index_or("byteOffset", 0), length = view["byteLength"].index();
+        note_compressed(document_, document_.at("buffers", buffer), missing_);
+        const DecodedView unpacked = decoded_view(document_, view_index);
+        const std::string& data = unpacked.bytes ? *unpacked.bytes : document_.buffer(buffer);
+        const std::size_t begin = unpacked.bytes ? 0 : view.index_or("byteOffset", 0),
+                          length = unpacked.bytes ? data.size() : view["byteLength"].index();
         const std::size_t size = bytes_of(type), element = size * components, count = out.size() / components;
-        const std::size_t declared = view.index_or("byteStride", 0),
+        const std::size_t declared = unpacked.bytes ? unpacked.stride : view.index_or("byteStride", 0),
                           stride = strided && declared > 0 ? declared : element;
         if (begin > data.size() || length > data.size() - begin)
             accessor_.fail("lies in " + view.place() + ", which reaches past its buffer");

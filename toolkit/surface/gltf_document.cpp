@@ -229,7 +229,8 @@ std::vector<double> GltfValue::numbers(std::size_t count) const
     return out;
 }
 
-GltfDocument::GltfDocument(std::string_view bytes, const std::string& file) : file_(file), bytes_(bytes.size())
+GltfDocument::GltfDocument(std::string_view bytes, const std::string& file, const Decompression* decoders)
+    : file_(file), decompression_(decoders), bytes_(bytes.size())
 {
     std::string_view text = bytes;
     if (bytes.starts_with("glTF"))

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -9,7 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cinch/surface.hpp"
+#include "cinch/io.hpp"
 
 namespace cinch {
 
@@ -60,7 +61,7 @@ private:
 class GltfDocument {
 public:
     /// `file` is for messages, and the buffers' files lie beside it. Throws InputError for what is no glTF 2.
-    GltfDocument(std::string_view bytes, const std::string& file);
+    GltfDocument(std::string_view bytes, const std::string& file, const Decompression* decoders = nullptr);
 
     const std::string& file() const { return file_; }
     GltfValue root() const { return {file_, root_, ""}; }
@@ -73,12 +74,16 @@ public:
     const std::string& buffer(std::size_t i);
     /// How much data the file and the files beside it can hold: no count in the file is believed beyond it.
     std::uintmax_t bytes() const { return bytes_; }
+    /// Null: none.
+    const Decompression* decompression() const { return decompression_; }
+    std::map<std::size_t, std::string> decoded_views; ///< by their number (gltf_compression.hpp)
 
 private:
     void split_binary(std::string_view bytes, std::string_view& text);
     std::string load(std::size_t i) const;
 
     std::string file_;
+    const Decompression* decompression_;
     nlohmann::json root_;
     std::string binary_chunk_;
     bool has_binary_chunk_ = false;

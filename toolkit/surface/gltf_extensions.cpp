@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "toolkit/surface/gltf_compression.hpp"
 #include "toolkit/surface/text_scan.hpp"
 
 namespace cinch {
@@ -68,16 +69,33 @@ bool is_harmless_extension(std::string_view name)
            std::find(std::begin(harmless), std::end(harmless), name) != std::end(harmless);
 }
 
-void note_extensions(const GltfValue& value, Missing& missing, std::initializer_list<std::string_view> modelled)
+namespace {
+
+template <class Modelled> void note(const GltfValue& value, Missing& missing, const Modelled& is_modelled)
 {
     const auto extensions = value.find("extensions");
     if (!extensions)
         return;
     for (const std::string& name : extensions->keys()) {
+        if (is_modelled(name))
+            continue;
         refuse_compression(name, value);
-        if (!is_harmless_extension(name) && std::find(modelled.begin(), modelled.end(), name) == modelled.end())
+        if (!is_harmless_extension(name))
             missing.add("the extension " + one_line(name), value.named());
     }
+}
+
+} // namespace
+
+void note_extensions(const GltfValue& value, Missing& missing, std::initializer_list<std::string_view> modelled)
+{
+    note(value, missing,
+         [&](const std::string& name) { return std::find(modelled.begin(), modelled.end(), name) != modelled.end(); });
+}
+
+void note_compressed(const GltfDocument& document, const GltfValue& value, Missing& missing)
+{
+    note(value, missing, [&](const std::string& name) { return is_decoded(document, name); });
 }
 
 namespace {
@@ -100,6 +118,8 @@ void note_extensions_of_file(const GltfDocument& document, Missing& missing)
     if (const auto required = root.find("extensionsRequired"))
         for (std::size_t i = 0; i < required->size(); ++i) {
             const std::string& name = (*required)[i].text();
+            if (is_decoded(document, name))
+                continue;
             refuse_compression(name, root);
             if (!is_harmless_extension(name) && !(name == "VRM" && !swings(root)) &&
                 std::find(std::begin(modelled_when_required), std::end(modelled_when_required), name) ==

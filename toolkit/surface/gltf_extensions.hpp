@@ -29,8 +29,9 @@ private:
 bool is_harmless_extension(std::string_view name);
 
 /// Adds the extensions of a value to what is missing, but for harmless ones and those named in `modelled`. Throws
-/// InputError for compression.
+/// InputError for compression, unless it is decoded where values like this have it.
 void note_extensions(const GltfValue& value, Missing& missing, std::initializer_list<std::string_view> modelled = {});
+void note_compressed(const GltfDocument& document, const GltfValue& value, Missing& missing);
 
 /// The same for what the file requires, and has at its top.
 void note_extensions_of_file(const GltfDocument& document, Missing& missing);

@@ -10,6 +10,7 @@
 #include "toolkit/surface/character.hpp"
 #include "toolkit/surface/gltf_accessor.hpp"
 #include "toolkit/surface/gltf_animation.hpp"
+#include "toolkit/surface/gltf_compression.hpp"
 #include "toolkit/surface/gltf_morph.hpp"
 #include "toolkit/surface/gltf_scene.hpp"
 #include "toolkit/surface/read_mesh.hpp"
@@ -57,7 +58,7 @@ public:
         note_extensions(mesh, missing_);
         bool drawn = false;
         for (std::size_t p = 0; p < primitives.size(); ++p) {
-            note_extensions(primitives[p], missing_);
+            note_compressed(document_, primitives[p], missing_);
             for (const std::string& name : primitives[p]["attributes"].keys())
                 if (!is_known_attribute(name))
                     missing_.add("the attribute '" + printable(name) + "'", primitives[p].place());
@@ -135,7 +136,14 @@ private:
         }
         const GltfValue attributes = primitive["attributes"];
         std::vector<std::vector<double>> joints, weights;
-        const std::vector<double> positions = read_accessor(document_, attributes["POSITION"].index(), 3, missing_);
+        const std::optional<DecodedPrimitive> unpacked = decoded_primitive(document_, primitive);
+        auto numbers = [&](const std::string& name, std::size_t components) {
+            if (unpacked)
+                if (const auto found = unpacked->attribute.find(name); found != unpacked->attribute.end())
+                    return found->second;
+            return read_accessor(document_, attributes[name.c_str()].index(), components, missing_);
+        };
+        const std::vector<double> positions = numbers("POSITION", 3);
         const std::size_t vertices = positions.size() / 3;
         std::size_t sets = 0;
         if (carrier.skin)
@@ -146,11 +154,11 @@ private:
             return;
         }
         for (std::size_t set = 0; 2 * set < sets; ++set) {
-            const std::size_t j = attributes[("JOINTS_" + std::to_string(set)).c_str()].index(),
-                              w = attributes[("WEIGHTS_" + std::to_string(set)).c_str()].index();
-            joints.push_back(read_accessor(document_, j, 4, missing_));
-            weights.push_back(read_accessor(document_, w, 4, missing_));
-            out_.influences.step = std::max(out_.influences.step, step_of_accessor(document_, w));
+            const std::string w = "WEIGHTS_" + std::to_string(set);
+            joints.push_back(numbers("JOINTS_" + std::to_string(set), 4));
+            weights.push_back(numbers(w, 4));
+            out_.influences.step =
+                std::max(out_.influences.step, step_of_accessor(document_, attributes[w.c_str()].index()));
             if (joints.back().size() != 4 * vertices || weights.back().size() != 4 * vertices)
                 primitive.fail("has " + std::to_string(vertices) +
                                " positions but another number of joints or weights");
@@ -164,7 +172,7 @@ private:
                                 carrier.skin ? influences_of(primitive, k, joints, weights, *carrier.skin)
                                              : Row{{carrier.joint, 1}},
                                 displaced[k]);
-        for (const Triangle& t : triangles_of(vertex_order(primitive, vertices), mode))
+        for (const Triangle& t : triangles_of(unpacked ? unpacked->indices : vertex_order(primitive, vertices), mode))
             out_.mesh.triangles.push_back({vertex_of[t[0]], vertex_of[t[1]], vertex_of[t[2]]});
     }
 
@@ -274,10 +282,11 @@ void require_whole(Character& character)
 
 } // namespace
 
-Character parse_gltf(std::string_view bytes, const std::string& file, Coverage coverage, Morphs morphs)
+Character parse_gltf(std::string_view bytes, const std::string& file, Coverage coverage, Morphs morphs,
+                     const Decompression* decoders)
 {
     require_default_arithmetic();
-    GltfDocument document(bytes, file);
+    GltfDocument document(bytes, file, decoders);
     Character out;
     out.file = file;
     Missing missing;
@@ -294,9 +303,9 @@ Character parse_gltf(std::string_view bytes, const std::string& file, Coverage c
     return out;
 }
 
-Character read_gltf(const std::filesystem::path& path, Coverage coverage, Morphs morphs)
+Character read_gltf(const std::filesystem::path& path, Coverage coverage, Morphs morphs, const Decompression* decoders)
 {
-    return parse_gltf(read_bytes(path), path.string(), coverage, morphs);
+    return parse_gltf(read_bytes(path), path.string(), coverage, morphs, decoders);
 }
 
 } // namespace cinch

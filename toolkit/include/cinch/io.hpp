@@ -10,7 +10,9 @@
 #include <filesystem>
 #include <memory>
 #include <span>
+#include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cinch/deform.hpp"
@@ -122,12 +124,34 @@ struct Character {
     std::vector<std::string> notes; ///< what was left out since it bounds nothing, for the load report
 };
 
+/// Decoders of what glTF files may be compressed with. cinch::io itself has none.
+struct Decompression {
+    /// Why data cannot be decoded.
+    struct Fault : std::runtime_error {
+        using std::runtime_error::runtime_error;
+    };
+    /// Triangles, and the numbers of attributes as stored, one list for each that was asked for.
+    struct Mesh {
+        std::size_t vertices = 0;                    ///< of it
+        std::vector<std::uint32_t> indices;          ///< three per triangle, each below `vertices`
+        std::vector<std::vector<double>> attributes; ///< per vertex as many as the attribute has
+    };
+    /// KHR_draco_mesh_compression: of the attributes with these ids. Throws Fault.
+    Mesh (*draco)(std::string_view bytes, std::span<const std::uint32_t> ids);
+    /// EXT_meshopt_compression: `count` elements of `stride` bytes; `mode` and `filter` as in the file. Throws Fault.
+    std::string (*meshopt)(std::string_view bytes, std::size_t count, std::size_t stride, const std::string& mode,
+                           const std::string& filter);
+};
+/// By their libraries, Draco and meshoptimizer: for programs that link cinch::compression too.
+const Decompression& decompression();
+
 /// Reads .gltf (with its .bin files), .glb or .vrm. What is read is listed, as is what cannot move a vertex (materials,
 /// textures, cameras, lights, names, extras, ...); anything else that touches the surface is missing. `whole`: where
 /// something is missing this throws, naming it, and animations with something missing have that as their fault.
-/// `partial`: the rest is read. Throws InputError; memory is bounded by the files' sizes.
+/// `partial`: the rest is read. What is compressed is refused, unless there are decoders. Throws InputError; memory is
+/// bounded by the files' sizes, but for what decoders unpack.
 Character read_gltf(const std::filesystem::path& path, Coverage coverage = Coverage::whole,
-                    Morphs morphs = Morphs::missing);
+                    Morphs morphs = Morphs::missing, const Decompression* decoders = nullptr);
 
 /// True for .glb, .gltf and .vrm, in any case.
 bool is_character_file(const std::filesystem::path& path);
