@@ -250,7 +250,7 @@ class Tie:
         self.positions, self.triangles = read_mesh(mesh)
         self.weights = read_weights(weights)[1] if weights else None
         self.clips = read_clips(transforms) if transforms else None
-        self.scaled, self.at, self.count = False, 0, 0
+        self.scaled, self.at, self.ties = False, 0, {}  # per clip: frames found, of how many
 
     def surface(self, surface):
         require(surface.triangles == self.triangles, "its triangles are not those of {}", plain(self.names[0]))
@@ -270,20 +270,22 @@ class Tie:
             return
         frames = next((frames for clip, frames in self.clips if clip == name), None)
         require(frames is not None, "{} has no clip {}", plain(self.names[2]), shown(name))
-        self.of = len(frames)
+        if name not in self.ties:
+            self.ties[name], self.at = [0, len(frames)], 0
         while self.at < len(frames) and frames[self.at] != (time, maps):
             self.at += 1
         require(self.at < len(frames),
                 "the frame is none of those of clip {} in {}, or not in their order", shown(name), plain(self.names[2]))
-        self.clip, self.at, self.count = name, self.at + 1, self.count + 1
+        self.at += 1
+        self.ties[name][0] += 1
 
     def lines(self):
         mesh, weights, clips = (plain(name) if name else None for name in self.names)
         own = "" if weights else "; weights and transforms are the certificate's own"
         yield f"triangles and positions are those of {mesh}{f', {CENTRED}' if self.scaled else ''}{own}"
         if weights:
-            yield (f"weights are those of {weights}, normalised; "
-                   f"transforms are those of {self.count} of {self.of} frames of clip {shown(self.clip)} in {clips}")
+            frames = ", ".join(f"{n} of {of} frames of clip {shown(name)}" for name, (n, of) in self.ties.items())
+            yield f"weights are those of {weights}, normalised; transforms are those of {frames} in {clips}"
 
 
 def same_weights(units, given):

@@ -134,7 +134,6 @@ class CharacterClip:
         self.character, self.curves, self.morphs = character, curves, morphs
         self.every = [c for of in curves.values() for c in of.values()] + [c for _, c in morphs]
         self.keys = sorted({t for c in self.every for t in c.times})
-        self.jumps = {t for c in self.every for t in c.jumps()}
         self.displaces = bool(morphs) or any(character.weights)
 
     def on(self, piece):
@@ -178,7 +177,6 @@ class Frames:
     def __init__(self, times, maps):
         self.times, self.maps = times, maps
         self.keys = sorted(set(times))
-        self.jumps = {a for a, b in zip(times, times[1:]) if a == b}
 
     def on(self, piece):
         i = max(bisect.bisect_right(self.times, piece.middle) - 1, 0)

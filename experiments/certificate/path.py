@@ -26,10 +26,6 @@ class Curve:
         self.value = rows[1::3] if interpolation == "CUBICSPLINE" else rows
         self.turns = {}
 
-    def jumps(self):
-        """The times at which it may."""
-        return self.times if self.interpolation == "STEP" else [a for a, b in zip(self.times, self.times[1:]) if a == b]
-
     def place(self, middle):
         """The last key at or before it, and whether the curve waits there."""
         key = bisect.bisect_right(self.times, middle) - 1
@@ -41,7 +37,7 @@ class Curve:
         """Where the piece begins and ends, as parts of the way from the key to the next."""
         length = self.times[key + 1] - self.times[key]
         ends = ((t - self.times[key]) / length for t in (piece.first, piece.last))
-        return [of_ratio(s.numerator, s.denominator) for s in ends]
+        return list(map(of_fraction, ends))
 
     def controls(self, piece):
         """Per number Bezier's control points on the piece: one where it waits, two, or four."""
@@ -53,11 +49,14 @@ class Curve:
         begin, end = self.part(key, piece)
         if self.interpolation == "LINEAR":
             return [[a + (b - a) * begin, a + (b - a) * end] for a, b in zip(first, last)]
-        length = self.times[key + 1] - self.times[key]
-        third = of_ratio(length.numerator, 3 * length.denominator)
-        out, into = self.rows[3 * key + 2], self.rows[3 * key + 3]
-        return [subdivided([a, a + third * of_double(o), b - third * of_double(i), b], begin, end)
+        third = (self.times[key + 1] - self.times[key]) / 3
+        out, into = ([of_fraction(third * Fraction(x)) for x in self.rows[3 * key + i]] for i in (2, 3))
+        return [subdivided([a, a + o, b - i, b], begin, end)
                 for a, b, o, i in zip(first, last, out, into)]
+
+
+def of_fraction(x):
+    return of_ratio(x.numerator, x.denominator)
 
 
 def lerp(a, b, s):
@@ -137,11 +136,11 @@ class Turn:
             return
         if c < 0:
             c, v = -c, [-x for x in v]
-        most = max(c, *map(abs, v))
-        v, c = [of_ratio(x, most) for x in v], of_ratio(c, most)
-        size = root(v[0].square() + v[1].square() + v[2].square())
-        self.angle = arc_tangent_of_quarter(size, c).times(2)
-        x, y, z = (e / size for e in v)
+        far, most = max(map(abs, v)), max(c, *map(abs, v))  # v may be far less than c
+        x, y, z = (of_ratio(e, far) for e in v)
+        size = root(x.square() + y.square() + z.square())
+        self.angle = arc_tangent_of_quarter(size * of_ratio(far, most), of_ratio(c, most)).times(2)
+        x, y, z = (e / size for e in (x, y, z))
         self.axis = [[ZERO, -z, y], [z, ZERO, -x], [-y, x, ZERO]]
         n = (x, y, z)
         self.square = [[n[r] * n[s] - (ONE if r == s else ZERO) for s in range(3)] for r in range(3)]

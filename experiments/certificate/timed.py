@@ -50,7 +50,7 @@ class TimedChecker:
     """As Checker, for intervals of time. `clips`: names and motions."""
 
     def __init__(self, records, header, tie=None, progress=lambda text: None):
-        self.records, self.header, self.progress = records, header, progress
+        self.records, self.header, self.progress, self.tie = records, header, progress, tie
         self.motion = MotionRecords(records)
         progress("surface")
         self.surface = Surface(header, records)
@@ -121,13 +121,15 @@ class TimedChecker:
         rows = [values[at:at + count] for at in range(0, len(values), count)]
         return first, Curve(record["interpolation"], times, rows)
 
-    def frames(self, count):
+    def frames(self, count, clip):
         times, maps = [], []
         for i in range(count):
             record = self.motion.expect(f"frame {i}", {"frame", "time", "maps"})
             in_order("frame", record["frame"], i)
             times.append(double(record["time"]))
             maps.append([doubles(m, 12, "a transform") for m in listed(record["maps"], self.header.nodes, "maps")])
+            if self.tie:
+                self.tie.frame(clip, times[-1], maps[-1])
         require(all(a <= b for a, b in zip(times, times[1:])), "the times of frames do not ascend")
         return Frames(times, maps)
 
@@ -145,7 +147,7 @@ class TimedChecker:
             motion = self.character.clip(curves, [self.morph(i, moved) for i in range(counts["morphs"])])
         else:
             require(counts["frames"] and not counts["curves"] and not counts["morphs"], "a clip without frames")
-            motion = self.frames(counts["frames"])
+            motion = self.frames(counts["frames"], name)
             require(motion.times[0] <= first and last <= motion.times[-1], "the clip goes on past its frames")
         require(not motion.keys or (first <= motion.keys[0] and motion.keys[-1] <= last),
                 "keys of clip {} lie outside of it", shown(name))

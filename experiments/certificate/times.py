@@ -136,13 +136,12 @@ class IntervalProof:
 
     def __init__(self, vertices, surface, motion, axes):
         self.vertices, self.surface, self.motion, self.axes = vertices, surface, motion, axes
-        self.kept = None
+        self.kept, self.endless = None, 1 << (vertices.unit_bits + 5000)
 
     def limits(self, bounds):
         """Per vertex and direction the least bound of the BVs that contain it, in units of places rounded down."""
         bits, surface = self.vertices.unit_bits, self.surface
-        endless = 1 << (bits + 1100)
-        of_bv = [[endless if x is None else floor_units(x, bits) for x in of] for of in bounds]
+        of_bv = [[self.endless if x is None else floor_units(x, bits) for x in of] for of in bounds]
         out = {}
         for i, pair in enumerate(surface.children):
             if pair:  # children come after their parents
@@ -161,8 +160,7 @@ class IntervalProof:
         open_pieces = []
         if begin < end:
             open_pieces = [(a, b, (a + b) / 2, 0, None) for a, b in zip(cuts, cuts[1:])]
-        if begin == end or last in motion.jumps:
-            open_pieces.append((end, end, end, 0, None))
+        open_pieces.append((end, end, end, 0, None))  # to which a curve may jump
         budget = SPARE_PIECES + PIECES_PER_KEY * len(open_pieces)
         open_pieces.reverse()
         while open_pieces:
@@ -174,7 +172,7 @@ class IntervalProof:
                 require(halvings < MOST_HALVINGS and budget > 0 and a < b,
                         "direction {}: vertex {} is not shown to stay within the bound from {} to {} s", d, v,
                         float(a), float(b))
-                c, which = (a + b) / 2, [v for v, _ in left]
+                c, which = (a + b) / 2, list(dict.fromkeys(v for v, _ in left))
                 open_pieces.append((c, b, middle, halvings + 1, which))
                 open_pieces.append((a, c, middle, halvings + 1, which))
 
@@ -183,9 +181,10 @@ class IntervalProof:
         try:
             enclosed = self.motion.on(piece)
         except ZeroDivisionError:
-            return [(v, 0) for v in which]
+            return [(v, d) for v in which for d, limit in enumerate(limits[v]) if limit < self.endless]
         vertices, left = self.vertices, []
-        begun = {} if self.kept is None or self.kept[0] != piece.first else self.kept[1]
+        # A half begins where the one before it ends; what is between other keys may begin elsewhere.
+        begun = self.kept[1] if self.kept and self.kept[0] == (piece.middle, piece.first) else {}
         ends = {}
         instant = piece.first == piece.last
         bends = enclosed.bend and not instant
@@ -201,7 +200,7 @@ class IntervalProof:
                     require((mid if d % 2 == 0 else -mid) - rad <= limit,
                             "direction {}: vertex {} lies beyond the bound at {} s", d, v, float(when))
                 break
-        self.kept = None if piece.last in self.motion.jumps else (piece.last, ends)
+        self.kept = (piece.middle, piece.last), ends
         return left
 
     def exceeded(self, first, last, bend, limits):

@@ -35,11 +35,12 @@ std::array<double, 4> quaternion(Random& random)
     return q;
 }
 
-// Keys as files have them, and the awkward ones: equal, of the other sign, nearly the same, half a turn away.
+// Keys as files have them, and the awkward ones: equal, of the other sign, nearly the same, half a turn away, and 0,
+// which is the identity, that no curve turns to.
 std::array<double, 4> next_key(Random& random, const std::array<double, 4>& q)
 {
     std::array<double, 4> out = q;
-    switch (one_of(random, 6)) {
+    switch (one_of(random, 7)) {
     case 0:
         return out;
     case 1:
@@ -52,6 +53,10 @@ std::array<double, 4> next_key(Random& random, const std::array<double, 4>& q)
         return out;
     case 3: // orthogonal but for a little: nearly half a turn
         return {stored(-q[1] + 1e-3), q[0], stored(-q[3]), q[2]};
+    case 4:
+        if (one_of(random, 4) == 0)
+            return {};
+        return quaternion(random);
     default:
         return quaternion(random);
     }

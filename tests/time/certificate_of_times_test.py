@@ -16,7 +16,7 @@ from certificate.records import Records  # noqa: E402
 from certificate.timed import HEADER, TimedChecker, TimedHeader  # noqa: E402
 from certificate.times import stays_below  # noqa: E402
 from certificate.values import Rejected  # noqa: E402
-from made_characters import face, wave  # noqa: E402
+from made_characters import face, nothing_to_turn_to, wave  # noqa: E402
 from sampled_character import Character  # noqa: E402
 
 draw = random.Random(1)
@@ -263,9 +263,29 @@ with tempfile.TemporaryDirectory() as folder:
             assert wrong.returncode == 1 and "beyond the bound" in wrong.stdout, (kind, wrong.stdout, wrong.stderr)
     run("verify", name, "--times", "all", "--certificate", proof)
     assert reason(folder, read(proof)) is None
-    made = run("bake", *strip(folder), "--certificate", proof)  # frames, interpolated
+    for more in ([], ["--whole"], ["--interval", "1"], ["--interval", "0.5"]):
+        made = run("bake", nothing_to_turn_to(folder), *more, "--prove", "--certificate", proof)
+        assert made.returncode == 0, made.stdout
+        assert reason(folder, read(proof)) is None, more
+        for d in range(6):  # every bound is reached, some of them at a jump alone
+            records = read(proof)
+            most = max(float.fromhex(r["bounds"][d]) for r in records if "bounds" in r)
+            for r in records:
+                if "bounds" in r and float.fromhex(r["bounds"][d]) == most:
+                    r["bounds"][d] = moved(r["bounds"][d], -1e-3)
+            assert reason(folder, sealed(records)), "bound %d inside the surface is accepted" % d
+    files = strip(folder)
+    made = run("bake", *files, "--certificate", proof)  # frames, interpolated
     assert made.returncode == 0, made.stderr
     count += mutated(folder, proof)
+    tied = subprocess.run([sys.executable, checker, proof, "--input", *files], capture_output=True, text=True)
+    assert tied.returncode == 0 and 'those of 4 of 4 frames of clip "sway"' in tied.stdout, tied.stdout + tied.stderr
+    with open(files[4]) as file:
+        other = file.read().replace("1.25", "1.5")
+    with open(files[4], "w") as file:
+        file.write(other)
+    tied = subprocess.run([sys.executable, checker, proof, "--input", *files], capture_output=True, text=True)
+    assert tied.returncode == 1 and "none of those of clip" in tied.stdout, tied.stdout + tied.stderr
     skins = os.path.join(shared, "meshes", "skin")
     for name in ("RiggedFigure.glb", "Fox.glb"):
         if os.path.isfile(os.path.join(skins, name)):

@@ -124,3 +124,22 @@ def face(folder, name="face.gltf"):
                 {"sampler": 1, "target": {"node": 2, "path": "weights"}},
                 {"sampler": 2, "target": pointer("/nodes/3/weights")},
                 {"sampler": 3, "target": {"node": 0, "path": "rotation"}}]}]})
+
+
+def nothing_to_turn_to(folder):
+    """A bone whose rotation has a key of 0, which is the identity that no curve turns to, under one that slides; and
+    one of keys that differ by far less than a rounding."""
+    make = Maker()
+    position = make.add([(5, 0, 0), (5, 1, 0), (5, 0, 1)], "VEC3")
+    times = make.add([(0.0,), (1.0,), (2.0,)], "SCALAR")
+    zero = make.add([turn(math.pi), (0, 0, 0, 0), (0, 0, 0, 1)], "VEC4")
+    slide = make.add([(0, 0, 0), (-10, 0, 0), (-10, 3, 0)], "VEC3")
+    nearly = make.add([(0, 0, 0, 1), (1e-30, 1e-25, 0, 1), (0, 0, 1e-40, 1)], "VEC4")
+    samplers = [{"input": times, "output": output} for output in (zero, slide, nearly)]
+    return make.write(folder, "nothing.gltf", {
+        "scenes": [{"nodes": [0]}], "nodes": [{"children": [1]}, {"children": [2]}, {"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": position}}]}],
+        "animations": [{"name": "turn", "samplers": samplers, "channels": [
+            {"sampler": 0, "target": {"node": 1, "path": "rotation"}},
+            {"sampler": 1, "target": {"node": 0, "path": "translation"}},
+            {"sampler": 2, "target": {"node": 2, "path": "rotation"}}]}]})

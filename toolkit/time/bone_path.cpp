@@ -58,8 +58,15 @@ Mat3 polar(const Quad& a, const Quad& b)
     return h;
 }
 
-Mat3 rotation(const Quad& q)
+Mat3 rotation(const Quad& of)
 {
+    double most = 0; // squares of tiny numbers vanish
+    for (const double x : of)
+        most = std::max(most, std::abs(x));
+    const int down = most > 0 ? -std::ilogb(most) : 0;
+    Quad q;
+    for (std::size_t i = 0; i < 4; ++i)
+        q[i] = std::scalbn(of[i], down);
     const double square = dot(q, q);
     return square > 0 ? Mat3(polar(q, q) / square) : Mat3::Identity();
 }
@@ -79,6 +86,15 @@ template <std::size_t N> Polynomial<N> path_of(const Curve& curve, const CurvePi
         std::copy_n(curve.value[i].begin(), N, out.begin());
         return out;
     });
+}
+
+// Whether a piece of LINEAR rotations does not end where the next one begins: a quaternion 0 has no rotation to go to
+// or to come from (TurnPath::slerp), and is the identity itself.
+bool jumps_after(const Curve& curve, const CurvePiece& piece)
+{
+    auto is_zero = [](const Quad& q) { return q == Quad{}; };
+    return curve.target == Curve::Target::rotation && curve.interpolation == Curve::Interpolation::linear &&
+           !piece.constant && (is_zero(curve.value[piece.key]) || is_zero(curve.value[piece.key + 1]));
 }
 
 double infinite_unless(double x) { return x < infinity ? x : infinity; }
@@ -216,9 +232,10 @@ BonePath::BonePath(const Bone& bone, const std::vector<const Curve*>& curves, do
         matrix_norm_ = std::sqrt(std::max(squared.eigenvalues()[2], 0.0)) + 0x1p-40 * matrix_magnitude_;
     }
     for (const Curve* curve : curves) {
-        const CurvePiece piece =
-            piece_of(curve->time_s, curve->interpolation,
-                     end_s ? end_of(curve->time_s, curve->interpolation, middle_s, *end_s) : middle_s);
+        CurvePiece piece = piece_of(curve->time_s, curve->interpolation, middle_s);
+        if (end_s && !jumps_after(*curve, piece))
+            piece = piece_of(curve->time_s, curve->interpolation,
+                             end_of(curve->time_s, curve->interpolation, middle_s, *end_s));
         const double key_s = curve->time_s[piece.key],
                      length_s = piece.constant ? 0 : curve->time_s[piece.key + 1] - key_s;
         switch (curve->target) {
