@@ -34,6 +34,20 @@ void add_bake(CLI::App& app, Run& run)
            "by how much of a BV's half extent a bound over time may exceed its bounds at instants [0.01]")
         ->check(within(1e-6, 1e6))
         ->option_text("X");
+    option("--engine", o.engine.float32,
+           "double: as cinch computes it; float32: also as an engine renders it in binary32, by weights as the file "
+           "stores them and joint matrices rounded to it [double]")
+        ->transform(one_of<bool>({{"double", false}, {"float32", true}}))
+        ->option_text("KIND");
+    option(
+        "--joint-error", o.engine.joint_error,
+        "how far an engine's joint matrices may put a point besides, as a share of the lengths of its chain of bones "
+        "[0]")
+        ->check(within(0, 1))
+        ->option_text("X");
+    command.add_flag(
+        "--nlerp", o.engine.nlerp,
+        wrapped("rotations between keys may be normalised sums of quaternions, as many engines have them"));
     command.add_flag("--prove", o.prove,
                      wrapped("prove every bound at every BV, by exact intervals over time on the transforms"));
     command.add_flag("--report", o.report,
@@ -68,6 +82,7 @@ Examples:
   cinch bake robot.glb --usd bounds.usda     to be sublayered
   cinch bake robot.glb --level -1 --prove    and an exact proof of each
   cinch bake robot.glb --certificate robot.jsonl.gz
+  cinch bake robot.glb --engine float32 --joint-error 1e-5 --nlerp
   cinch bake robot.glb --report              how tight, and what frames miss
 
 Exit status: 0 done, 1 a bound not proven, 2 bad usage or input, 130 interrupted

@@ -18,7 +18,17 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* statement = "every vertex, in exact arithmetic and as computed, at all times of [t0, t1]";
+std::string statement_of(const Engine& engine)
+{
+    std::string out = "every vertex, in exact arithmetic and as computed";
+    if (engine.float32)
+        out += ", and as an engine in binary32 places it by the weights of the file";
+    if (engine.joint_error > 0)
+        out += fmt::format(", with joint matrices off by {:g} of their chains", engine.joint_error);
+    if (engine.nlerp)
+        out += ", with rotations of nlerp too";
+    return out + ", at all times of [t0, t1]";
+}
 
 Json record_of(const TimedBody& body, const BakeOptions& options, const Bvh& bvh, const std::string& clip,
                const BakedInterval& interval, std::size_t bv)
@@ -34,7 +44,7 @@ Json record_of(const TimedBody& body, const BakeOptions& options, const Bvh& bvh
                 {"level", level_of(bvh, bv)},
                 {"min", {-s[1], -s[3], -s[5]}},
                 {"max", {s[0], s[2], s[4]}},
-                {"statement", statement},
+                {"statement", statement_of(options.engine)},
                 {"method", name_of(options.bounds.methods)},
                 {"precision", options.bounds.precision == Precision::float32 ? "float" : "double"},
                 {"kdop", kdop}};
@@ -60,7 +70,7 @@ int bake(const BakeOptions& options)
 {
     require_default_arithmetic();
     RecordOutput output(options.output, provenance(0, options.input.seed));
-    const std::vector<TimedBody> bodies = load_timed(options.input);
+    const std::vector<TimedBody> bodies = load_timed(options.input, options.engine);
     if (bodies.size() > 1 && (!options.npz.empty() || !options.usd.empty() || !options.certificate.empty()))
         throw InputError("--npz, --usd and --certificate hold one body; --body chooses it");
     catch_interrupt();
@@ -144,7 +154,7 @@ int bake(const BakeOptions& options)
                 write_usd(options.usd, baked);
             if (words)
                 fmt::print("{} of {} BVs written; one box of '{}' holds {}{}\n", grouped(written),
-                           grouped(bvh.bvs.size()), name_of(options.bounds.methods), statement,
+                           grouped(bvh.bvs.size()), name_of(options.bounds.methods), statement_of(options.engine),
                            partial_mark(body.input.missing));
         }
     } catch (const Interrupted&) {

@@ -4,6 +4,7 @@
 #include "cinch/refit.hpp"
 #include "experiments/input.hpp"
 #include "experiments/report/record_output.hpp"
+#include "toolkit/time/engine.hpp"
 
 namespace cinch {
 
@@ -13,6 +14,7 @@ enum class TimeSabotage { none, no_remainder, half_bump, first_half, still_morph
 struct BakeOptions {
     InputOptions input; ///< clip empty: all of them
     RefitOptions bounds;
+    Engine engine;
     std::size_t leaf = 4;    ///< most triangles of a leaf
     int level = 0;           ///< deepest of the BVs written; -1: all
     double interval_s = 0;   ///< 0: by itself

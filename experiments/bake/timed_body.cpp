@@ -12,11 +12,13 @@
 
 namespace cinch {
 
-std::vector<TimedBody> load_timed(const InputOptions& options)
+std::vector<TimedBody> load_timed(const InputOptions& options, const Engine& engine)
 {
     std::vector<TimedBody> bodies;
     InputOptions what = options;
     if (!is_character_file(what.input)) {
+        if (!engine.exact())
+            throw InputError("--engine, --nlerp and --joint-error are of characters (.glb, .gltf, .vrm)");
         if (is_scene(what.input)) { // all of its frames, of which a choice is the usual
             what.first_frame = true;
             if (what.frames == 0)
@@ -59,7 +61,7 @@ std::vector<TimedBody> load_timed(const InputOptions& options)
                 if (std::find(body.input.missing.begin(), body.input.missing.end(), name) == body.input.missing.end())
                     body.input.missing.push_back(name);
         }
-        body.clips.push_back({character_motion(character, *animation, body.input.surface), animation});
+        body.clips.push_back({character_motion(character, *animation, body.input.surface, engine), animation});
     }
     return bodies;
 }

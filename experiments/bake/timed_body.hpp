@@ -30,7 +30,7 @@ struct TimedBody {
 
 /// All clips of a character that can be used, or the one that was asked for; of others the frames, interpolated. Throws
 /// InputError, as load_input does.
-std::vector<TimedBody> load_timed(const InputOptions& options);
+std::vector<TimedBody> load_timed(const InputOptions& options, const Engine& engine = {});
 
 /// The motion that ends when it is asked to; and says what a wrong formula would say, for tests of the exact side.
 TimedMotion watched(TimedMotion motion, TimeSabotage how);

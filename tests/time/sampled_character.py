@@ -72,7 +72,7 @@ def slerp(a, b, s):
     return [(math.sin((1 - s) * angle) * x + math.sin(s * angle) * y) / math.sin(angle) for x, y in zip(a, b)]
 
 
-def value_at(times, values, mode, path, t):
+def value_at(times, values, mode, path, t, turn=slerp):
     cubic = mode == "CUBICSPLINE"
     key = lambda i: values[3 * i + 1] if cubic else values[i]
     if t <= times[0]:
@@ -89,7 +89,7 @@ def value_at(times, values, mode, path, t):
         return [(2 * s**3 - 3 * s**2 + 1) * p + d * (s**3 - 2 * s**2 + s) * m + (3 * s**2 - 2 * s**3) * q
                 + d * (s**3 - s**2) * n for p, m, q, n in zip(key(i), out, key(i + 1), into)]
     if path == "rotation":
-        return slerp(key(i), key(i + 1), s)
+        return turn(key(i), key(i + 1), s)
     return [(1 - s) * p + s * q for p, q in zip(key(i), key(i + 1))]
 
 
@@ -142,11 +142,12 @@ class Character:
             out.append((animation.get("name") or "anim%d" % i, channels))
         return out
 
-    def vertices(self, channels, t):
+    def posed(self, channels, t, turn=slerp):
+        """Parts with the weights of their targets and the matrices of their joints; `turn`: between rotations."""
         local = {}
         moved = {}
         for node, path, times, values, mode in channels:
-            moved.setdefault(node, {})[path] = value_at(times, values, mode, path, t)
+            moved.setdefault(node, {})[path] = value_at(times, values, mode, path, t, turn)
         for i, node in enumerate(self.nodes):
             if "matrix" in node and not {"translation", "rotation", "scale"} & set(moved.get(i, {})):
                 m = node["matrix"]
@@ -162,10 +163,14 @@ class Character:
                 world[i] = product(world_of(self.parent[i]), local[i]) if i in self.parent else local[i]
             return world[i]
 
-        for joints, binds, positions, indices, weights, node, targets, still in self.parts:
-            amount = moved.get(node, {}).get("weights", still)
-            maps = [product(world_of(node), [[b[4 * c + r] for c in range(4)] for r in range(4)])
-                    for node, b in zip(joints, binds)]
+        for part in self.parts:
+            joints, binds, _, _, _, node, _, still = part
+            yield part, moved.get(node, {}).get("weights", still), [
+                product(world_of(node), [[b[4 * c + r] for c in range(4)] for r in range(4)])
+                for node, b in zip(joints, binds)]
+
+    def vertices(self, channels, t):
+        for (_, _, positions, indices, weights, _, targets, _), amount, maps in self.posed(channels, t):
             for k, (p, index, weight) in enumerate(zip(positions, indices, weights)):
                 p = [x + sum(a * t[k][r] for a, t in zip(amount, targets)) for r, x in enumerate(p)]
                 total = sum(weight)

@@ -126,7 +126,9 @@ TurnPath TurnPath::slerp(const Quad& q0, const Quad& q1, double d)
         return out;
     out.kind_ = Kind::slerp;
     out.axis_ = cross(v / length);
-    out.rate_ = 2 * std::atan2(length, std::max(c, 0.0)) / d;
+    const double angle = std::atan2(length, std::max(c, 0.0)), ratio = dot(q1, q1) / dot(q0, q0);
+    out.rate_ = 2 * angle / d;
+    out.between_ = {angle * rounded_up, std::sqrt(std::max(ratio, 1 / ratio)) * rounded_up, c <= 0x1p-20 * length};
     return out;
 }
 

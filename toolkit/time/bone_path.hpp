@@ -35,12 +35,21 @@ public:
     };
     Limits over(double a, double b) const;
 
+    /// Of slerp(): the angle between the quaternions, whether it is half a turn but for a rounding of binary32, and the
+    /// ratio of their lengths, at least 1. Of others an angle of 0.
+    struct Between {
+        double angle = 0, length_ratio = 1;
+        bool is_half = false;
+    };
+    const Between& between() const { return between_; }
+
 private:
     enum class Kind { fixed, slerp, cubic } kind_ = Kind::fixed;
     Mat3 first_ = Mat3::Identity(), axis_ = Mat3::Zero(); // [n]×
     double rate_ = 0;                                     // θ/d
     Polynomial<4> path_;
     double length_ = 0;
+    Between between_;
 };
 
 /// A bone's transform to its parent, x ↦ p(t) + R(t) S(t) x, on a closed interval of time within which no curve of it
@@ -65,6 +74,8 @@ public:
         std::array<double, 3> p_magnitude{}, m_magnitude{};
     };
     Limits over(double a_s, double b_s) const;
+    /// Of its rotation.
+    const TurnPath::Between& between() const { return r_.path.between(); }
 
 private:
     bool is_matrix_ = false;

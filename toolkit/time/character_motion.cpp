@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 
 #include "cinch/environment.hpp"
@@ -79,7 +80,8 @@ AffineMap joint_map(const World& g, std::size_t k, const AffineMap& bind)
 
 class CharacterMotion {
 public:
-    CharacterMotion(const Character& character, const Character::Animation& animation, const DeformableSurface& surface)
+    CharacterMotion(const Character& character, const Character::Animation& animation, const DeformableSurface& surface,
+                    const Engine& engine)
         : file_(character.file), name_(animation.name), bones_(character.bones), joints_(character.joints),
           curves_(animation.curves), curves_of_(bones_.size()), reach_(reaches(surface))
     {
@@ -88,6 +90,8 @@ public:
             throw InputError(animation.fault);
         for (std::size_t c = 0; c < curves_.size(); ++c)
             curves_of_[curves_[c].bone].push_back(c);
+        if (!engine.exact())
+            engine_.emplace(engine, character, surface);
         if (!moves_targets(character, animation))
             return;
         weights_ = character.target_weights;
@@ -118,6 +122,7 @@ private:
     std::vector<Curve> curves_;
     std::vector<std::vector<std::size_t>> curves_of_; // a bone
     std::vector<Reach> reach_;
+    std::optional<EngineError> engine_;
     // Of morph targets, where their weights are not all 0: weights that no curve sets, curves, and how far each target
     // displaces a vertex that a joint influences.
     std::vector<double> weights_;
@@ -218,9 +223,19 @@ MotionInterval CharacterMotion::over(double a_s, double b_s) const
                                       of_bind * displaced_without[1] * wider, of_bind * displaced_without[2] * wider};
         r[0] = r[0] * wider + 0x1p-48 * without[0];
         std::size_t depth = 1;
+        // How far an engine's rotations put it, and the lengths that its products add up, link by link.
+        double turned = 0, lengths = (of_bind * (reach.centre.norm() + reach.radius + displaced[0]) +
+                                      shift(joint.inverse_bind).norm()) *
+                                     wider;
         for (std::int64_t at = joint.bone; at >= 0; at = bones_[static_cast<std::size_t>(at)].parent, ++depth) {
             const BonePath::Limits& l = limits[static_cast<std::size_t>(at)];
             const BonePath::Jet& jet = jets[static_cast<std::size_t>(at)];
+            if (engine_) {
+                const TurnPath::Between& turn = path[static_cast<std::size_t>(at)].between();
+                const double apart = engine_->of_turn(turn.angle, turn.is_half, turn.length_ratio);
+                turned = (times(l.m[0], turned) + times(apart, times(l.m[0], r[0] + turned))) * wider;
+                lengths = (l.p[0] + times(l.m[0], lengths)) * wider;
+            }
             for (std::size_t k = 4; k-- > 0;) {
                 double sum = l.p[k];
                 for (std::size_t i = 0; i <= k; ++i)
@@ -248,6 +263,8 @@ MotionInterval CharacterMotion::over(double a_s, double b_s) const
         limit.bump = times(square, r[2]) * wider;
         limit.path = times(length, r[1]) * wider;
         limit.error = rounding * without[0] * wider;
+        if (engine_)
+            limit.error = (limit.error + engine_->of(j, lengths, turned)) * wider;
         limit.bend_error = times(square, without[2]) * rounding * wider;
         for (double* x : {&limit.remainder, &limit.bump, &limit.path, &limit.error, &limit.bend_error})
             if (std::isnan(*x) || !reach.any)
@@ -260,9 +277,9 @@ MotionInterval CharacterMotion::over(double a_s, double b_s) const
 } // namespace
 
 TimedMotion character_motion(const Character& character, const Character::Animation& animation,
-                             const DeformableSurface& surface)
+                             const DeformableSurface& surface, const Engine& engine)
 {
-    const auto motion = std::make_shared<const CharacterMotion>(character, animation, surface);
+    const auto motion = std::make_shared<const CharacterMotion>(character, animation, surface, engine);
     std::set<double> keys{animation.first_s, animation.last_s};
     for (const Curve& curve : animation.curves)
         for (const double t : curve.time_s)

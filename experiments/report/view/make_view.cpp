@@ -335,6 +335,7 @@ nlohmann::ordered_json make_view(const ViewRequest& request)
     Json view{{"title", request.title.empty() ? inputs.name : request.title},
               {"text", request.text},
               {"scene", request.scene}};
+    view["up"] = is_character_file(request.scene) ? "y" : "z"; // as the glTF specification has it
     view["missing"] = inputs.missing();
     view["methods"] = methods.size() + (request.swept ? 1 : 0);
     view["first"] = shown_first(request, frames, bvs.level.size() - 1);

@@ -70,7 +70,10 @@ class Stage {
         this.grid = new THREE.Group();
         this.grid.scale.setScalar(1 / size);
         this.grid.position.set(...low.map((x, r) => -(x + high[r]) / 2 / size));
-        this.scene.add(this.grid);
+        const upright = new THREE.Group();
+        upright.rotation.x = model.data.up === 'y' ? Math.PI / 2 : 0;
+        upright.add(this.grid);
+        this.scene.add(upright);
         this.addSurface();
         this.addNodes();
         this.addBounds();
@@ -84,10 +87,11 @@ class Stage {
     // From so far that the box of the first picture fits.
     lookFrom({azimuth, elevation}) {
         const a = azimuth * Math.PI / 180, e = elevation * Math.PI / 180, tangent = Math.tan(fieldOfView / 2 * Math.PI / 180), {low, high} = this.first;
+        const shown = this.model.data.up === 'y' ? [0, 2, 1] : [0, 1, 2], extent = shown.map(r => high[r] - low[r]);
         const towards = [Math.cos(a) * Math.cos(e), Math.sin(a) * Math.cos(e), Math.sin(e)], right = [-Math.sin(a), Math.cos(a), 0], up = cross(towards, right);
         let distance = 0;
         for (let i = 0; i < 8; ++i) {
-            const corner = [0, 1, 2].map(r => 0.52 * (i >> r & 1 ? 1 : -1) * (high[r] - low[r]) * this.grid.scale.x);
+            const corner = [0, 1, 2].map(r => 0.52 * (i >> r & 1 ? 1 : -1) * extent[r] * this.grid.scale.x);
             distance = Math.max(distance, dot(corner, towards) + Math.max(Math.abs(dot(corner, right)) / 1.6, Math.abs(dot(corner, up))) / tangent);
         }
         this.controls.target.set(0, 0, 0);
