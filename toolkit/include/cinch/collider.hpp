@@ -156,4 +156,31 @@ private:
     std::unique_ptr<Parts> parts_;
 };
 
+/// A body over a step of time: a tree, and bounds of all of its BVs that hold throughout, supports[bv·k + d]: those of
+/// a ClipBounder, or swept() of both ends. Views.
+struct SweptBody {
+    const Bvh* bvh = nullptr;         ///< not null
+    std::span<const double> supports; ///< no NaN; +∞ meets everything
+};
+
+/// Two leaves: places of bodies in the list, body_a < body_b, and of BVs in their trees.
+struct LeafPair {
+    std::uint32_t body_a; ///< the first one
+    std::uint32_t leaf_a; ///< a BV of it
+    std::uint32_t body_b; ///< the second one
+    std::uint32_t leaf_b; ///< a BV of it
+    /// By body_a, leaf_a, body_b, leaf_b.
+    auto operator<=>(const LeafPair&) const = default;
+};
+
+/// The leaves of different bodies whose bounds over the step meet, sorted: the broad phase of continuous collision.
+/// Triangles that touch at any time of the step lie in one of the pairs. Throws std::invalid_argument for a k that is
+/// none, and for supports whose size is not that of the tree.
+std::vector<LeafPair> swept_leaf_pairs(std::span<const SweptBody> bodies, int kdop = 6);
+
+/// Bounds over a step in which every T_j moves from one end to the other linearly, (1 − τ) T_j(0) + τ T_j(1), as
+/// between simulated frames: every vertex moves along a straight line, so that along each direction it is farthest at
+/// one end. Of bounds at both ends; all three have the same size, else throws std::invalid_argument.
+void swept(std::span<const double> first, std::span<const double> last, std::span<double> supports);
+
 } // namespace cinch
