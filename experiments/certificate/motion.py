@@ -136,10 +136,18 @@ class CharacterClip:
         self.keys = sorted({t for c in self.every for t in c.times})
         self.displaces = bool(morphs) or any(character.weights)
 
-    def on(self, piece):
-        """ZeroDivisionError where a quaternion may pass 0."""
-        character, world = self.character, []
+    def on(self, piece, nodes):
+        """Of these simulation nodes, None for others. ZeroDivisionError where a quaternion may pass 0."""
+        character, world, wanted = self.character, [], set()
+        for j in nodes:
+            i = character.joints[j][0]
+            while i >= 0 and i not in wanted:
+                wanted.add(i)
+                i = character.bones[i].parent
         for i, bone in enumerate(character.bones):
+            if i not in wanted:
+                world.append(None)
+                continue
             if i in self.curves:
                 first, last, own = bone.moved(self.curves[i], piece)
             else:
@@ -156,10 +164,11 @@ class CharacterClip:
             still = inside[1] is None and inside[2] is None
             world.append((inside[0], inside[0], *inside) if still else
                          (chained(begin, first, True), chained(end, last, True), *inside))
-        of = [[], [], [], [], []]
-        for bone, bind in character.joints:
+        of = [[None] * len(character.joints) for _ in range(5)]
+        for j in nodes:
+            bone, bind = character.joints[j]
             for out, m in zip(of, world[bone]):
-                out.append(chained(m, bind, True) or NOTHING)
+                out[j] = chained(m, bind, True) or NOTHING
         return Enclosed(*of, self.weights_on(piece) if self.displaces else None)
 
     def weights_on(self, piece):
@@ -178,7 +187,8 @@ class Frames:
         self.times, self.maps = times, maps
         self.keys = sorted(set(times))
 
-    def on(self, piece):
+    def on(self, piece, nodes):
+        """Of all simulation nodes."""
         i = max(bisect.bisect_right(self.times, piece.middle) - 1, 0)
         if i + 1 == len(self.times):
             maps = [affine(m) for m in self.maps[i]]

@@ -179,7 +179,7 @@ class IntervalProof:
     def on(self, piece, limits, which):
         """The vertices, each with a direction, of which it is open whether they stay within their limits."""
         try:
-            enclosed = self.motion.on(piece)
+            enclosed = self.motion.on(piece, {j for v in which for j, _, _ in self.vertices.rows[v]})
         except ZeroDivisionError:
             return [(v, d) for v in which for d, limit in enumerate(limits[v]) if limit < self.endless]
         vertices, left = self.vertices, []

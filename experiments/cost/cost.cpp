@@ -55,9 +55,9 @@ Verdict pareto(const std::vector<CostRow>& rows, const CostRow& row)
 std::vector<CostRow> measure(const CostSample& sample, int kdop, double seconds, Load& load)
 {
     const auto k = static_cast<std::size_t>(kdop);
-    std::vector<CostContestant> contestants = scalar_contestants(sample, kdop);
+    std::vector<CostContestant> runners = scalar_contestants(sample, kdop);
     for (CostContestant& kernel : kernel_contestants(sample, kdop))
-        contestants.push_back(std::move(kernel));
+        runners.push_back(std::move(kernel));
     // The exact value of a method over the BV's own box is that of its rational form; of the others the support of the
     // vertices.
     std::vector<double> truth(sample.bvh.bvs.size() * k), vertices;
@@ -68,26 +68,26 @@ std::vector<CostRow> measure(const CostSample& sample, int kdop, double seconds,
 
     std::vector<std::vector<double>> supports;
     std::vector<std::function<void()>> calls;
-    for (const CostContestant& c : contestants) {
+    for (const CostContestant& c : runners) {
         throw_if_interrupted();
         supports.emplace_back(sample.bvs.size() * k);
         c.bound(supports.back());
     }
-    for (std::size_t i = 0; i < contestants.size(); ++i)
-        calls.emplace_back([&, i] { contestants[i].bound(supports[i]); });
+    for (std::size_t i = 0; i < runners.size(); ++i)
+        calls.emplace_back([&, i] { runners[i].bound(supports[i]); });
     const RaceTimes times = race(calls, seconds);
     load.cpu_share = std::min(load.cpu_share, times.cpu_share);
     load.load = std::max(load.load, times.load);
 
     auto find = [&](const std::string& method, const char* arithmetic) {
         return static_cast<std::size_t>(
-            std::find_if(contestants.begin(), contestants.end(),
+            std::find_if(runners.begin(), runners.end(),
                          [&](const CostContestant& c) { return c.method == method && c.arithmetic == arithmetic; }) -
-            contestants.begin());
+            runners.begin());
     };
     std::vector<CostRow> rows;
-    for (std::size_t i = 0; i < contestants.size(); ++i) {
-        const CostContestant& c = contestants[i];
+    for (std::size_t i = 0; i < runners.size(); ++i) {
+        const CostContestant& c = runners[i];
         const std::size_t exact = find(c.method, "rational"),
                           plain = std::min(find(c.method, "double"), find(c.method, "double kernel"));
         CostRow row{kdop,
@@ -110,11 +110,11 @@ std::vector<CostRow> measure(const CostSample& sample, int kdop, double seconds,
                 ++measured;
             }
             for (std::size_t d = b * k; d < (b + 1) * k; ++d) {
-                const double value = exact < contestants.size() ? supports[exact][d] : vertices[d],
+                const double value = exact < runners.size() ? supports[exact][d] : vertices[d],
                              width = vertices[d] + vertices[d ^ 1];
                 // The rational value is the least double above the exact one: below it is below the exact value, by a
                 // step or more.
-                if (exact < contestants.size() ? supports[i][d] < value
+                if (exact < runners.size() ? supports[i][d] < value
                                                : supports[i][d] < value - 1e-14 * std::abs(value)) {
                     ++below;
                     if (width > 0)

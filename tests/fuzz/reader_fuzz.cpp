@@ -85,7 +85,7 @@ void read([[maybe_unused]] std::string_view bytes)
 #elif defined(CINCH_FUZZ_gltf)
     for (const Coverage coverage :
          {Coverage::partial, Coverage::whole}) { // what is refused as a whole is read in part first
-        const Character character = parse_gltf(bytes, "fuzz.gltf", coverage);
+        const Character character = parse_gltf(bytes, "fuzz.gltf", coverage, Morphs::missing, &decompression());
         check(character.mesh);
         check(character.influences, character.mesh.vertices.size());
         require(coverage == Coverage::partial || character.missing.empty());

@@ -74,7 +74,7 @@ def motion(name, proof):
             t, h = a + (b - a) * Fraction(draw.randrange(1, 100), 100), (b - a) / 1024
             places = []
             for first, last in ((t, t), (t - h, t + h)):
-                enclosed = moved.on(Piece(first, last, (a + b) / 2))
+                enclosed = moved.on(Piece(first, last, (a + b) / 2), range(len(checked.character.joints)))
                 places.append([[checked.vertices.place(v, enclosed.first, enclosed.weights, 0),
                                 checked.vertices.place(v, enclosed.last, enclosed.weights, 1),
                                 checked.vertices.bend(v, enclosed)] for v in checked.vertices.used])
