@@ -115,7 +115,7 @@ std::vector<CostRow> measure(const CostSample& sample, int kdop, double seconds,
                 // The rational value is the least double above the exact one: below it is below the exact value, by a
                 // step or more.
                 if (exact < runners.size() ? supports[i][d] < value
-                                               : supports[i][d] < value - 1e-14 * std::abs(value)) {
+                                           : supports[i][d] < value - 1e-14 * std::abs(value)) {
                     ++below;
                     if (width > 0)
                         worst = std::max(worst, (value - supports[i][d]) / width);
