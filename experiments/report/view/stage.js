@@ -71,7 +71,8 @@ class Stage {
         this.grid.scale.setScalar(1 / size);
         this.grid.position.set(...low.map((x, r) => -(x + high[r]) / 2 / size));
         const upright = new THREE.Group();
-        upright.rotation.x = model.data.up === 'y' ? Math.PI / 2 : 0;
+        if (model.data.up === 'y')
+            upright.rotation.set(Math.PI / 2, Math.PI, 0); // y up, and what faces z faces the first look
         upright.add(this.grid);
         this.scene.add(upright);
         this.addSurface();
