@@ -12,11 +12,11 @@ import check_certificate  # noqa: E402
 from certificate.interval import (UNIT, Interval, arc_tangent_of_quarter, of_double, root,  # noqa: E402
                                   sine_and_cosine, sine_and_cosine_between)
 from certificate.path import Piece  # noqa: E402
-from certificate.records import Records  # noqa: E402
+from certificate.records import AXES, Records  # noqa: E402
 from certificate.timed import HEADER, TimedChecker, TimedHeader  # noqa: E402
-from certificate.times import stays_below  # noqa: E402
+from certificate.times import IntervalProof, floor_units, stays_below  # noqa: E402
 from certificate.values import Rejected  # noqa: E402
-from made_characters import face, nothing_to_turn_to, wave  # noqa: E402
+from made_characters import breath, face, nothing_to_turn_to, spin, wave  # noqa: E402
 from sampled_character import Character  # noqa: E402
 
 draw = random.Random(1)
@@ -58,6 +58,11 @@ def arithmetic():
             t = first + (last - first) * i / 8
             assert sine.low() / UNIT - 1e-15 <= math.sin(t) <= sine.high() / UNIT + 1e-15
             assert cosine.low() / UNIT - 1e-15 <= math.cos(t) <= cosine.high() / UNIT + 1e-15
+        x = draw.uniform(0.1, 3)  # of all of a wide angle
+        sine, cosine = sine_and_cosine(Interval(of_double(x).mid, UNIT >> 7))
+        for t in (x - 2**-7, x, x + 2**-7):
+            assert sine.low() / UNIT - 1e-15 <= math.sin(t) <= sine.high() / UNIT + 1e-15
+            assert cosine.low() / UNIT - 1e-15 <= math.cos(t) <= cosine.high() / UNIT + 1e-15
         # The parabola's top, against samples of it.
         f, l, b = draw.randrange(-100, 100), draw.randrange(-100, 100), draw.randrange(-50, 100)
         most = max((1 - t / 400) * f + t / 400 * l + 4 * t / 400 * (1 - t / 400) * max(b, 0) for t in range(401))
@@ -89,6 +94,30 @@ def motion(name, proof):
                     second = begin[0][r] - 2 * at[0][0][r] + end[0][r]
                     slack = (begin[1][r] + 2 * at[0][1][r] + end[1][r]) * 4
                     assert 4 * second - slack <= bend[r] + rad[r] and 4 * second + slack >= bend[r] - rad[r], (clip, r)
+
+
+def reached(folder, name, proof, kdop):
+    """Of one BV alone, and along each direction alone: a bound a little above what vertices reach is accepted, one
+    below is rejected, wherever between two keys they do."""
+    run("bake", name, "--whole", "--leaf", "100000", "--kdop", kdop, "--certificate", proof)
+    records, character = read(proof), Character(name)
+    axes = AXES[int(kdop)]
+    starts = [i for i, r in enumerate(records) if "clip" in r]
+    for at, (clip, channels) in zip(starts, character.clips()):
+        box = next(i for i in range(at, len(records)) if "bounds" in records[i])
+        keys = sorted({t for c in channels for t in c[2]})
+        places = [v for a, b in zip(keys, keys[1:]) for i in range(301)
+                  for v in character.vertices(channels, a + (b - a) * i / 300)]
+        size = max(max(map(abs, v)) for v in places)
+        for d in range(int(kdop)):
+            most = max((1 - 2 * (d % 2)) * sum(a * x for a, x in zip(axes[d // 2], v)) for v in places)
+            for by in (-1e-2, -1e-3, -1e-4, 1e-3):
+                changed = copy.deepcopy(records)
+                for r in changed:
+                    if "bounds" in r:
+                        r["bounds"] = ["inf"] * int(kdop)
+                changed[box]["bounds"][d] = (most + by * size).hex()
+                assert (reason(folder, sealed(changed)) is None) == (by > 0), (clip, d, by)
 
 
 def read(name):
@@ -164,6 +193,12 @@ def changes(records):
     def gap(r): r[intervals[-1]]["first"] = moved(r[intervals[-1]]["first"], 1e-9)
     def early(r): r[clips[-1]]["last"] = moved(r[clips[-1]]["last"], 1.0)
     def late(r): r[clips[-1]]["first"] = moved(r[clips[-1]]["first"], 0.01)
+    def shorter(r):
+        for i in (intervals[-1], clips[-1]):
+            r[i]["last"] = moved(r[i]["last"], -1e-3)
+    def later(r):
+        for i in (intervals[0], clips[0]):
+            r[i]["first"] = moved(r[i]["first"], 1e-3)
     def doubled(r): r.insert(bounds[0], copy.deepcopy(r[bounds[0]]))
     def lost(r): del r[bounds[-1]]
     def exchanged(r): r[bounds[0]], r[bounds[1]] = r[bounds[1]], r[bounds[0]]
@@ -176,8 +211,9 @@ def changes(records):
     def heavier(r):
         at = next(i for i in places("rest") if len(r[i]["weights"]) > 1)
         r[at]["weights"][0] = moved(r[at]["weights"][0], 2**-52)
-    yield from ((f.__name__, f) for f in (no_number, minus, no_interval, gap, early, late, doubled, lost, exchanged,
-                                          no_end, more, triangle, far, heavier))
+    made = (no_number, minus, no_interval, gap, early, late, shorter, later, doubled, lost, exchanged, no_end, more,
+            triangle, far, heavier)
+    yield from ((f.__name__, f) for f in made)
     for i in places("curve"):
         def key(r, i=i): r[i]["values"][-1] = [moved(x, 40 * size * (-1)**n) for n, x in enumerate(r[i]["values"][-1])]
         def order(r, i=i): r[i]["times"].reverse()
@@ -244,7 +280,22 @@ def run(*arguments):
     return made
 
 
+def limits():
+    """A vertex of two leaves stays below the least bound of both and of what is above them, rounded down."""
+    class Of:
+        unit_bits, children, corners = 200, [(1, 2), None, None], [None, [0, 1], [1, 2]]
+    proof = IntervalProof(Of, Of, None, AXES[6])
+    for top, a, b in ((9, 3, 5), (9, 5, 3), (4, 7, 3)):
+        bounds = [[float(x)] * 6 for x in (top, a, b)]
+        found = proof.limits(bounds)
+        assert [found[v][0] >> 200 for v in range(3)] == [min(top, a), min(top, a, b), min(top, b)], bounds
+    assert proof.limits([[None] * 6] * 3)[1] == [proof.endless] * 6
+    for x in (0.1, -0.1, 1e-70, -1e-70, -3.0, 2**60):
+        assert Fraction(floor_units(x, 200), 1 << 200) <= Fraction(x) < Fraction(floor_units(x, 200) + 1, 1 << 200)
+
+
 arithmetic()
+limits()
 with tempfile.TemporaryDirectory() as folder:
     proof, count = os.path.join(folder, "proof.jsonl.gz"), 0
     for name, kinds in ((face(folder), ("no-remainder", "half-bump", "first-half", "still-morphs")),
@@ -263,6 +314,16 @@ with tempfile.TemporaryDirectory() as folder:
             assert wrong.returncode == 1 and "beyond the bound" in wrong.stdout, (kind, wrong.stdout, wrong.stderr)
     run("verify", name, "--times", "all", "--certificate", proof)
     assert reason(folder, read(proof)) is None
+    for name, kdop in ((spin(folder), "14"), (wave(folder), "6"), (breath(folder), "6")):
+        reached(folder, name, proof, kdop)
+    named = read(proof)
+    for r in named:
+        if "clip" in r:
+            r["clip"] += " again"
+    assert reason(folder, sealed(named)) is None and "SHA-256 of the motion" in reason(folder, named)
+    plain = os.path.join(folder, "plain.jsonl")
+    run("bake", spin(folder), "--certificate", plain)
+    motion(spin(folder), plain)
     for more in ([], ["--whole"], ["--interval", "1"], ["--interval", "0.5"]):
         made = run("bake", nothing_to_turn_to(folder), *more, "--prove", "--certificate", proof)
         assert made.returncode == 0, made.stdout

@@ -19,6 +19,16 @@ def nlerp(a, b, s):
     return [x / size for x in q]
 
 
+def other_way(a, b, s):
+    """Where rounding decides which way half a turn goes, either."""
+    if abs(sum(x * y for x, y in zip(a, b))) < 1e-7 and draw.random() < 0.5:
+        b = [-x for x in b]
+        size, other = (math.sqrt(sum(x * x for x in q)) for q in (a, b))
+        angle = math.acos(sum(x * y for x, y in zip(a, b)) / size / other)
+        return [math.sin((1 - s) * angle) * x / size + math.sin(s * angle) * y / other for x, y in zip(a, b)]
+    return slerp(a, b, s)
+
+
 def sum_of(terms, fused):
     """Of products, in binary32, in the order in which they stand."""
     total = 0.0
@@ -83,14 +93,14 @@ def chain(folder):
                                      {"sampler": 1, "target": {"node": 1, "path": "rotation"}}]}]})
 
 
-def plate(folder):
+def plate(folder, name="plate.gltf", second=(turn(0.4), turn(-1.7))):
     """The corners of a box, without a skin: bounds by its joint are as tight as can be."""
     make = Maker()
     corners = [(40 + i % 2, i // 2 % 2, i // 4 / 2) for i in range(8)]
     position = make.add([corners[i % 8] for i in range(9)], "VEC3")
     times, key = make.add([(0.0,), (1.0,)], "SCALAR"), make.add([turn(0), turn(2.2)], "VEC4")
-    other = make.add([turn(0.4), turn(-1.7)], "VEC4")
-    return make.write(folder, "plate.gltf", {
+    other = make.add(second, "VEC4")
+    return make.write(folder, name, {
         "scenes": [{"nodes": [0]}], "nodes": [{"children": [1]}, {"mesh": 0, "translation": [30, 0, 0]}],
         "meshes": [{"primitives": [{"attributes": {"POSITION": position}}]}],
         "animations": [{"name": "turn", "samplers": [{"input": times, "output": key},
@@ -112,6 +122,11 @@ with tempfile.TemporaryDirectory() as folder:
     assert outside(flat, [*short, "--engine", "float32"], nlerp, 300) > 1e-4, "nlerp is not felt"
     assert outside(flat, [*short, "--engine", "float32", "--nlerp"], nlerp, 300) <= 0
     assert outside(flat, [*short, "--engine", "float32", "--nlerp"], slerp, 300) <= 0
+    half = plate(folder, "half.gltf", [turn(0.4), turn(0.4 + math.pi - 1e-8)])
+    assert outside(half, short, other_way, 100) > 0.01, "the other way is not felt"
+    assert outside(half, [*short, "--engine", "float32"], other_way, 100) <= 0
+    long = plate(folder, "long.gltf", [[3 * x for x in turn(0.4)], turn(-1.7)])  # their lengths count in a sum
+    assert outside(long, [*short, "--engine", "float32", "--nlerp"], nlerp, 300) <= 0
     assert outside(skinned, short, slerp, 100) > 0.01, "weights as stored are not felt"
     for name in (skinned, wave(folder), face(folder)):
         assert outside(name, ["--engine", "float32", "--nlerp"], nlerp, 60) <= 0, name

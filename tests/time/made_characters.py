@@ -143,3 +143,45 @@ def nothing_to_turn_to(folder):
             {"sampler": 0, "target": {"node": 1, "path": "rotation"}},
             {"sampler": 1, "target": {"node": 0, "path": "translation"}},
             {"sampler": 2, "target": {"node": 2, "path": "rotation"}}]}]})
+
+
+def spin(folder):
+    """A tetrahedron that turns and grows at once, about axes of its own, far between keys and under a bone that sways:
+    along every direction it is farthest at no key."""
+    make = Maker()
+    position = make.add([(1, 0.2, 0.1), (-0.7, 0.8, 0), (-0.2, -0.9, 0.6), (0.1, 0.3, -1)], "VEC3")
+    index = make.add([(i,) for i in (0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2)], "SCALAR", 5123)
+    times = make.add([(0.0,), (0.7,), (1.6,), (2.2,)], "SCALAR")
+    about = lambda a, n: (*(math.sin(a / 2) * x / math.hypot(*n) for x in n), math.cos(a / 2))
+    turns = make.add([about(0, (1, 0, 0)), about(2.3, (1, 2, -1)), about(3, (-1, 0.5, 2)), about(2.8, (0.2, -1, 1))],
+                     "VEC4")
+    grows = make.add([(1, 1, 1), (0.6, 1.5, 1.1), (1.6, 0.7, 1), (1, 1.3, 0.5)], "VEC3")
+    sways = make.add([about(0.3, (0, 1, 1)), about(1.6, (1, 1, 0)), about(2.4, (-1, 1, 1)), about(0.2, (0, 0, 1))],
+                     "VEC4")
+    samplers = [{"input": times, "output": output} for output in (turns, grows, sways)]
+    return make.write(folder, "spin.gltf", {
+        "scenes": [{"nodes": [0]}], "nodes": [{"children": [1]}, {"mesh": 0, "translation": [0.4, 0.1, 0.2]}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": position}, "indices": index}]}],
+        "animations": [{"name": "spin", "samplers": samplers, "channels": [
+            {"sampler": 0, "target": {"node": 1, "path": "rotation"}},
+            {"sampler": 1, "target": {"node": 1, "path": "scale"}},
+            {"sampler": 2, "target": {"node": 0, "path": "rotation"}}]}]})
+
+
+def breath(folder):
+    """A plate whose two morph targets swell past all keys of theirs, on a bone that turns."""
+    make = Maker()
+    position = make.add([(1, 0, 0), (0, 1, 0.2), (-1, -0.3, 0)], "VEC3")
+    targets = [make.add(rows, "VEC3") for rows in ([(0.5, 0, 1), (0, 0.7, 0), (-0.4, 0, 0.3)],
+                                                   [(0, 1, 0), (0.3, 0, -1), (0, -0.5, 0)])]
+    times = make.add([(0.0,), (1.0,), (1.9,)], "SCALAR")
+    weights = make.add([(w,) for w in (0, 0, 0.1, 0, 5, -3, -4, 2, 0.3, 0.6, -5, 4, 0, 0, 0, 0.2, 0, 0)], "SCALAR")
+    turns = make.add([turn(0), turn(1.1), turn(0.4)], "VEC4")
+    return make.write(folder, "breath.gltf", {
+        "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": position}, "targets": [
+            {"POSITION": t} for t in targets]}]}],
+        "animations": [{"name": "swell", "samplers": [
+            {"input": times, "output": weights, "interpolation": "CUBICSPLINE"}, {"input": times, "output": turns}],
+            "channels": [{"sampler": 0, "target": {"node": 0, "path": "weights"}},
+                         {"sampler": 1, "target": {"node": 0, "path": "rotation"}}]}]})
