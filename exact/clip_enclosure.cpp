@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
+#include <cmath>
 #include <set>
 
 #include <boost/multiprecision/mpfi.hpp>
@@ -18,8 +18,6 @@ using Real = mp::number<mp::mpfi_float_backend<77>, mp::et_off>; // an interval;
 using LongQuad = std::array<Real, 4>;                            // x, y, z, w
 using Quad = std::array<Interval, 4>;                            // x, y, z, w
 using Rows = std::array<std::array<Interval, 4>, 3>;             // a row (0 0 0 1), or of a derivative (0 0 0 0), below
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // A value with its derivative by time.
 void clear(Interval& x) { x = Interval(0); }
@@ -79,7 +77,7 @@ struct SinCos {
 };
 SinCos sin_cos_at(double x)
 {
-    const Interval y = Interval(x) / 4, square = y * y;
+    const Interval y = Interval(x) / 4;
     Interval sine(0), cosine(0), term(1); // y^n/n!
     for (int n = 0; n < 16; ++n) {
         (n % 2 ? sine : cosine) += n / 2 % 2 ? -term : term;
@@ -217,7 +215,10 @@ State state_of(const Bone& bone)
         out.translation.value[n] = bone.translation[n];
         out.scale.value[n] = bone.scale[n];
     }
-    out.rotation.value = exactly(bone.rotation);
+    const auto& q = bone.rotation; // scaled exactly: the square of a tiny number would be none
+    const double most = std::max({std::abs(q[0]), std::abs(q[1]), std::abs(q[2]), std::abs(q[3])});
+    for (std::size_t n = 0; n < 4; ++n)
+        out.rotation.value[n] = most > 0 ? std::ldexp(q[n], -std::ilogb(most)) : 0;
     return out;
 }
 
@@ -271,7 +272,7 @@ Rows sum(const Rows& x, const Rows& y)
 
 Enclosure enclosure_of(const Interval& x) // an overflow leaves no interval
 {
-    return x.inf() <= x.sup() ? Enclosure{x.inf(), x.sup()} : Enclosure{-infinity, infinity};
+    return x.inf() <= x.sup() ? Enclosure{x.inf(), x.sup()} : Enclosure{-HUGE_VAL, HUGE_VAL};
 }
 
 MapEnclosure enclosure_of(const Rows& m)
@@ -320,9 +321,8 @@ ClipEnclosure::ClipEnclosure(const Character& character, const Character::Animat
             for (std::size_t i = 1; i < curve.value.size(); ++i)
                 arcs.push_back(arc_between(curve.value[i - 1], curve.value[i]));
     }
-    for (const Bone& bone : parts_->bones) {
+    for (const Bone& bone : parts_->bones)
         parts_->still.push_back(local(bone, state_of(bone), false));
-    }
     std::set<double> keys;
     for (const Curve& curve : animation.curves)
         keys.insert(curve.time_s.begin(), curve.time_s.end());

@@ -98,7 +98,10 @@ int verify_all_times(const VerifyOptions& options)
     }
     output.finish();
     if (words)
-        fmt::print("{}{}{}\n", verdict_line(all), partial_mark(missing), stopped ? "; interrupted" : "");
+        fmt::print("{}{}{}\n", verdict_line(all), partial_mark(missing),
+                   stopped ? options.certificate.empty() ? "; interrupted"
+                                                         : "; interrupted, and " + options.certificate + " not written"
+                           : "");
     return all.violated || all.undecided ? 1 : stopped ? interrupt_status() : 0;
 }
 

@@ -4,7 +4,7 @@ enclosures of values and derivatives on all of it. Time on a piece runs from 0 t
 import bisect
 from fractions import Fraction
 
-from certificate.interval import (ONE, ZERO, Interval, arc_tangent_of_quarter, hull, of_double, of_ratio, root,
+from certificate.interval import (ONE, ZERO, arc_tangent_of_quarter, hull, of_double, of_ratio, root,
                                   sine_and_cosine, sine_and_cosine_between)
 
 IDENTITY = [[ONE, ZERO, ZERO], [ZERO, ONE, ZERO], [ZERO, ZERO, ONE]]

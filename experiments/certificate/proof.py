@@ -5,11 +5,11 @@ import math
 import struct
 import sys
 
-from certificate.records import FORMAT, HEADER, Header, hashes
+from certificate.records import HEADER, Header, check_end, partial
 from certificate.surface import RestBounds, Surface
 from certificate.timed import HEADER as TIMED_HEADER, TimedChecker, TimedHeader
 from certificate.values import (WEIGHT_BITS, Rejected, bits_after_point, double, double_or_ratio, in_order,
-                                least_doubles, listed, plain, require, scaled, shown, whole)
+                                least_doubles, listed, require, scaled, whole)
 
 
 class FrameProof:
@@ -162,7 +162,8 @@ class Checker:
         for f in range(header.frames):
             progress(f"frame {f + 1} of {header.frames}")
             self.check_frame(f, transforms)
-        self.check_end(transforms)
+        check_end(records, header, "frames", {"proven": self.proven, "infinite": self.infinite},
+                  ("transforms", transforms))
 
     def check_frame(self, f, transforms):
         record = self.records.expect(f"frame {f}", {"frame", "time", "maps"})
@@ -189,18 +190,5 @@ class Checker:
             lambdas = [double_or_ratio(x) for x in listed(record["lambda"], k, "lambda")] if duality else None
             proof.check(i, bounds, lambdas)
 
-    def check_end(self, transforms):
-        record = self.records.expect("the end", {"end", "frames", "proven", "infinite", "violated", "sha256"})
-        require(record["end"] == FORMAT, "the end is that of {}", shown(record["end"]))
-        violated = whole(record["violated"], 0, 1 << 62, "violated")
-        require(not violated, "the run that wrote it found {} bounds violated", violated)
-        for name, found in (("frames", self.header.frames), ("proven", self.proven), ("infinite", self.infinite)):
-            require(record[name] == found and type(record[name]) is int,
-                    "it ends with {} {}, but there are {}", name, shown(record[name]), found)
-        require(hashes(record["sha256"], {"transforms"})["transforms"] == transforms.hexdigest(),
-                "the SHA-256 of the transforms is another than stated")
-        require(self.records.next(set()) is None, "something follows the end")
-
     def verdict(self):
-        partial = f"partial (missing: {', '.join(map(plain, self.header.missing))}): " if self.header.missing else ""
-        return f"{partial}{self.proven} bounds proven, {self.infinite} infinite"
+        return f"{partial(self.header)}{self.proven} bounds proven, {self.infinite} infinite"

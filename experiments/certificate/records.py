@@ -4,7 +4,7 @@ import hashlib
 import json
 import re
 
-from certificate.values import Rejected, listed, require, shown, text, whole, MOST_INDEX
+from certificate.values import Rejected, listed, plain, require, shown, text, whole, MOST_INDEX
 
 FORMAT = "cinch 2"
 FACES = [(1, 0, 0), (0, 1, 0), (0, 0, 1)]
@@ -119,3 +119,23 @@ def hashes(record, names):
         require(type(value) is str and re.fullmatch("[0-9a-f]{64}", value),
                 "the SHA-256 of the {} is {}", name, shown(value))
     return record
+
+
+def check_end(records, header, parts, counts, hashed):
+    """The last record. `parts`: the name of what the header counts; `counts`: of bounds; `hashed`: name and hash."""
+    record = records.expect("the end", {"end", parts, "proven", "infinite", "violated", "sha256"})
+    require(record["end"] == header.FORMAT, "the end is that of {}", shown(record["end"]))
+    violated = whole(record["violated"], 0, 1 << 62, "violated")
+    require(not violated, "the run that wrote it found {} bounds violated, or could not prove them", violated)
+    for name, found in ((parts, getattr(header, parts)), *counts.items()):
+        require(record[name] == found and type(record[name]) is int,
+                "it ends with {} {}, but there are {}", name, shown(record[name]), found)
+    name, found = hashed
+    require(hashes(record["sha256"], {name})[name] == found.hexdigest(),
+            "the SHA-256 of the {} is another than stated", name)
+    require(records.next(set()) is None, "something follows the end")
+
+
+def partial(header):
+    """Before a verdict."""
+    return f"partial (missing: {', '.join(map(plain, header.missing))}): " if header.missing else ""

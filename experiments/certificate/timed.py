@@ -5,7 +5,7 @@ import json
 
 from certificate.motion import Bone, Character, Frames
 from certificate.path import Curve
-from certificate.records import Header, hashes
+from certificate.records import Header, check_end, partial
 from certificate.surface import Surface
 from certificate.times import IntervalProof, Vertices
 from certificate.values import Rejected, double, in_order, listed, plain, require, shown, text, whole
@@ -63,7 +63,8 @@ class TimedChecker:
         self.clips = []
         for i in range(header.clips):
             self.check_clip(i)
-        self.check_end()
+        check_end(records, header, "clips", {"proven": self.proven, "infinite": self.infinite},
+                  ("motion", self.motion.hash))
 
     def read_character(self):
         header, bones, joints, weights, self.targets = self.header, [], [], [], []
@@ -182,19 +183,6 @@ class TimedChecker:
         self.intervals += 1
         return last
 
-    def check_end(self):
-        record = self.records.expect("the end", {"end", "clips", "proven", "infinite", "violated", "sha256"})
-        require(record["end"] == FORMAT, "the end is that of {}", shown(record["end"]))
-        violated = whole(record["violated"], 0, 1 << 62, "violated")
-        require(not violated, "the run that wrote it did not prove {} bounds", violated)
-        for name, found in (("clips", self.header.clips), ("proven", self.proven), ("infinite", self.infinite)):
-            require(record[name] == found and type(record[name]) is int,
-                    "it ends with {} {}, but there are {}", name, shown(record[name]), found)
-        require(hashes(record["sha256"], {"motion"})["motion"] == self.motion.hash.hexdigest(),
-                "the SHA-256 of the motion is another than stated")
-        require(self.records.next(set()) is None, "something follows the end")
-
     def verdict(self):
-        partial = f"partial (missing: {', '.join(map(plain, self.header.missing))}): " if self.header.missing else ""
-        return (f"{partial}{self.proven} bounds over {self.intervals} intervals of time proven, {self.infinite} "
-                "infinite")
+        return (f"{partial(self.header)}{self.proven} bounds over {self.intervals} intervals of time proven, "
+                f"{self.infinite} infinite")

@@ -57,32 +57,15 @@ class Vertices:
             return moved(self.blended(v, maps), *self.displaced(v, weights, end, True), self.one)
         x, y, z = self.rest[v]
         (j, u, _), *others = self.rows[v]
-        mid, rad = maps[j]
-        most = max(rad)
+        mid, most = [u * n for n in maps[j][0]], max(maps[j][1])
+        for j, u, _ in others:
+            mid = [n + u * o for n, o in zip(mid, maps[j][0])]
+            most = max(most, *maps[j][1])
         a, b, c, d, e, f, g, h, i, k, l, m = mid
-        if others:
-            a, b, c, d, e, f, g, h, i, k, l, m = (u * n for n in mid)
-            for j, u, _ in others:
-                mid, rad = maps[j]
-                most = max(most, *rad)
-                p, q, r, s, t, n, o, w, aa, bb, cc, dd = mid
-                a += u * p
-                b += u * q
-                c += u * r
-                d += u * s
-                e += u * t
-                f += u * n
-                g += u * o
-                h += u * w
-                i += u * aa
-                k += u * bb
-                l += u * cc
-                m += u * dd
-            u = 1
         one = self.one
         rad = (abs(x) + abs(y) + abs(z) + one) * most << WEIGHT_BITS
-        return [u * (a * x + b * y + c * z + d * one), u * (e * x + f * y + g * z + h * one),
-                u * (i * x + k * y + l * z + m * one)], [rad, rad, rad]
+        return [a * x + b * y + c * z + d * one, e * x + f * y + g * z + h * one,
+                i * x + k * y + l * z + m * one], [rad, rad, rad]
 
     def bend(self, v, enclosed):
         """An enclosure of its second derivative on all of a piece."""

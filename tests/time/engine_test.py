@@ -93,7 +93,7 @@ def chain(folder):
                                      {"sampler": 1, "target": {"node": 1, "path": "rotation"}}]}]})
 
 
-def plate(folder, name="plate.gltf", second=(turn(0.4), turn(-1.7))):
+def plate(folder, name="plate.gltf", second=(turn(0.4), turn(-1.7)), link=30):
     """The corners of a box, without a skin: bounds by its joint are as tight as can be."""
     make = Maker()
     corners = [(40 + i % 2, i // 2 % 2, i // 4 / 2) for i in range(8)]
@@ -101,7 +101,7 @@ def plate(folder, name="plate.gltf", second=(turn(0.4), turn(-1.7))):
     times, key = make.add([(0.0,), (1.0,)], "SCALAR"), make.add([turn(0), turn(2.2)], "VEC4")
     other = make.add(second, "VEC4")
     return make.write(folder, name, {
-        "scenes": [{"nodes": [0]}], "nodes": [{"children": [1]}, {"mesh": 0, "translation": [30, 0, 0]}],
+        "scenes": [{"nodes": [0]}], "nodes": [{"children": [1]}, {"mesh": 0, "translation": [link, 0, 0]}],
         "meshes": [{"primitives": [{"attributes": {"POSITION": position}}]}],
         "animations": [{"name": "turn", "samplers": [{"input": times, "output": key},
                                                      {"input": times, "output": other}],
@@ -134,12 +134,15 @@ with tempfile.TemporaryDirectory() as folder:
     for options in (["--engine", "half"], ["--joint-error", "-1"]):
         assert subprocess.run([program, "bake", flat, *options], capture_output=True).returncode == 2, options
     assert subprocess.run([program, "bake", "fish", "--nlerp"], capture_output=True).returncode == 2
-    # A joint error widens by as much as is said of chains: of 30 + 41 here, and the box by less than four times that.
+    # A joint error widens by as much as is said of the lengths of a chain, and a box by less than four times that.
     fine = ["--whole", "--tolerance", "1e-5", "--precision", "double", "--json"]
-    boxes = [json.loads(subprocess.run([program, "bake", flat, *fine, *more], capture_output=True,
-                                       text=True).stdout.splitlines()[0]) for more in ([], ["--joint-error", "1e-3"])]
-    wider = [b - a for a, b in zip(*(box["max"] for box in boxes))]
-    assert all(0.07 <= x <= 0.3 for x in wider), wider
+    for link in (30, 500):
+        name = plate(folder, "link.gltf", link=link)
+        boxes = [json.loads(subprocess.run([program, "bake", name, *fine, *more], capture_output=True,
+                                           text=True).stdout.splitlines()[0])
+                 for more in ([], ["--joint-error", "1e-3"])]
+        wider, chain_of = [b - a for a, b in zip(*(box["max"] for box in boxes))], 1e-3 * (link + 41)
+        assert all(0.98 * chain_of <= x <= 4 * chain_of for x in wider), (link, wider)
 for name in ("CesiumMan.glb", "Fox.glb"):
     path = os.path.join(shared, "meshes", "skin", name)
     if os.path.isfile(path):

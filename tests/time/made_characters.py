@@ -128,7 +128,8 @@ def face(folder, name="face.gltf"):
 
 def nothing_to_turn_to(folder):
     """A bone whose rotation has a key of 0, which is the identity that no curve turns to, under one that slides; and
-    one of keys that differ by far less than a rounding."""
+    one of keys that differ by far less than a rounding. The slide is half turned by a quaternion whose square is 0 in
+    doubles."""
     make = Maker()
     position = make.add([(5, 0, 0), (5, 1, 0), (5, 0, 1)], "VEC3")
     times = make.add([(0.0,), (1.0,), (2.0,)], "SCALAR")
@@ -137,7 +138,8 @@ def nothing_to_turn_to(folder):
     nearly = make.add([(0, 0, 0, 1), (1e-30, 1e-25, 0, 1), (0, 0, 1e-40, 1)], "VEC4")
     samplers = [{"input": times, "output": output} for output in (zero, slide, nearly)]
     return make.write(folder, "nothing.gltf", {
-        "scenes": [{"nodes": [0]}], "nodes": [{"children": [1]}, {"children": [2]}, {"mesh": 0}],
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"children": [1], "rotation": [0, 1e-200, 0, 0]}, {"children": [2]}, {"mesh": 0}],
         "meshes": [{"primitives": [{"attributes": {"POSITION": position}}]}],
         "animations": [{"name": "turn", "samplers": samplers, "channels": [
             {"sampler": 0, "target": {"node": 1, "path": "rotation"}},
