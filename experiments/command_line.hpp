@@ -6,7 +6,9 @@
 #include <optional>
 #include <span>
 
-#include <CLI/CLI.hpp>
+namespace CLI {
+class App;
+}
 
 namespace cinch {
 

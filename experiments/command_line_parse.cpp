@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <numeric>
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "experiments/command_line.hpp"

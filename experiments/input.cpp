@@ -10,39 +10,18 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/guard_surface.hpp"
+#include "experiments/input_parts.hpp"
 #include "experiments/input_scene.hpp"
 #include "experiments/report/number.hpp"
 #include "experiments/report/whole_file.hpp"
 #include "experiments/shipped.hpp"
 #include "toolkit/deform/motion.hpp"
 #include "toolkit/deform/sample_nodes.hpp"
-#include "toolkit/surface/character.hpp"
 #include "toolkit/surface/read_mesh.hpp"
 #include "toolkit/surface/shapes.hpp"
 #include "toolkit/surface/triangle_mesh.hpp"
 
 namespace cinch {
-namespace {
-
-// The last shape is kept: a study asks for the same one in cell after cell, and some take seconds to make.
-std::optional<TriangleMesh> shape_of(const std::string& name)
-{
-    static std::mutex mutex;
-    static std::string last;
-    static std::optional<TriangleMesh> kept;
-    const std::lock_guard lock(mutex);
-    if (last != name) {
-        kept = named_shape(name);
-        last = name;
-    }
-    return kept;
-}
-
-// Simulation nodes of the shipped shapes, as in the paper.
-std::size_t usual_nodes(const std::string& shape)
-{
-    return shape.starts_with("brain") ? 509 : shape.starts_with("santa") ? 115 : 96;
-}
 
 void refuse_options(const InputOptions& o, bool scripted, bool clips, bool sampled)
 {
@@ -63,6 +42,56 @@ void refuse_options(const InputOptions& o, bool scripted, bool clips, bool sampl
         refuse(o.fps != 0, "--fps", "a skinned character (.glb, .gltf)");
         refuse(o.partial, "--partial", "a skinned character (.glb, .gltf)");
     }
+}
+
+void report_weights(Input& input, const Influences& influences)
+{
+    const WeightReport& weights = input.weights_read;
+    if (weights.normalised)
+        input.report.push_back(fmt::format(
+            "{} of {} had weights that do not sum to 1 (sums {:.7g} to {:.7g}); normalised, which changed weights by "
+            "up to {:.3g} %{}",
+            grouped(weights.normalised), counted(weights.vertices, "vertex", "vertices"), weights.least_sum,
+            weights.greatest_sum, 100 * weights.largest_change,
+            influences.step > 0 && !weights.beyond_steps ? ", no more than their integers are coarse" : ""));
+    if (weights.without_weight)
+        input.report.push_back(fmt::format("{} no weight at all; bound to the first simulation node named",
+                                           counted(weights.without_weight, "vertex has", "vertices have")));
+}
+
+void head_report(Input& input, const std::string& motion)
+{
+    const auto& weights = input.surface.weights;
+    const std::string influences =
+        fmt::format("{:.1f}", static_cast<double>(weights.node.size()) / static_cast<double>(weights.vertex_count()));
+    input.report.insert(
+        input.report.begin(),
+        {fmt::format("{}: {}, {}", input.name, counted(input.surface.mesh.vertices.size(), "vertex", "vertices"),
+                     counted(input.surface.mesh.triangles.size(), "triangle", "triangles")),
+         fmt::format("{}, {} influences per vertex; {}",
+                     counted(weights.node_count, "simulation node", "simulation nodes"), influences, motion)});
+}
+
+namespace {
+
+// The last shape is kept: a study asks for the same one in cell after cell, and some take seconds to make.
+std::optional<TriangleMesh> shape_of(const std::string& name)
+{
+    static std::mutex mutex;
+    static std::string last;
+    static std::optional<TriangleMesh> kept;
+    const std::lock_guard lock(mutex);
+    if (last != name) {
+        kept = named_shape(name);
+        last = name;
+    }
+    return kept;
+}
+
+// Simulation nodes of the shipped shapes, as in the paper.
+std::size_t usual_nodes(const std::string& shape)
+{
+    return shape.starts_with("brain") ? 509 : shape.starts_with("santa") ? 115 : 96;
 }
 
 void script(Input& input, const InputOptions& options, std::size_t default_nodes)
@@ -88,99 +117,6 @@ void script(Input& input, const InputOptions& options, std::size_t default_nodes
     if (alone)
         input.report.push_back(fmt::format("{} beyond the reach of every simulation node; each follows its nearest one",
                                            counted(alone, "vertex lies", "vertices lie")));
-}
-
-// What normalising the weights of a file changed.
-void report_weights(Input& input, const Influences& influences)
-{
-    const WeightReport& weights = input.weights_read;
-    if (weights.normalised)
-        input.report.push_back(fmt::format(
-            "{} of {} had weights that do not sum to 1 (sums {:.7g} to {:.7g}); normalised, which changed weights by "
-            "up to {:.3g} %{}",
-            grouped(weights.normalised), counted(weights.vertices, "vertex", "vertices"), weights.least_sum,
-            weights.greatest_sum, 100 * weights.largest_change,
-            influences.step > 0 && !weights.beyond_steps ? ", no more than their integers are coarse" : ""));
-    if (weights.without_weight)
-        input.report.push_back(fmt::format("{} no weight at all; bound to the first simulation node named",
-                                           counted(weights.without_weight, "vertex has", "vertices have")));
-}
-
-template <class Named>
-const Named& choose_clip(const std::vector<Named>& clips, const std::string& wanted, const std::string& file)
-{
-    std::string known;
-    for (const Named& clip : clips) {
-        if (clip.name == wanted || wanted.empty())
-            return clip;
-        known += (known.empty() ? "" : ", ") + clip.name;
-    }
-    throw InputError::in_file(file, fmt::format("has no clip '{}'; it has {}", wanted, known.empty() ? "none" : known));
-}
-
-// Notes the file's surface and what is said of it.
-void take_surface(Input& input, const Character& character)
-{
-    input.report.insert(input.report.end(), character.notes.begin(), character.notes.end());
-    input.surface = surface_of(character, &input.weights_read);
-    if (input.surface.mesh.triangles.empty())
-        throw InputError::in_file(input.name, "has no triangles; there is nothing to bound");
-    report_weights(input, character.influences);
-}
-
-Character open_character(Input& input, const InputOptions& options, Morphs morphs)
-{
-    input.simulation_nodes_fixed = true;
-    refuse_options(options, false, true, true);
-    if (!options.weights.empty() || !options.transforms.empty())
-        throw InputError("--weights and --transforms need a mesh (OBJ, OFF, PLY, STL)");
-    return read_gltf(options.input, Coverage::partial, morphs, &decompression());
-}
-
-// The first lines of the load report; `motion`: the rest of the second one.
-void head_report(Input& input, const std::string& motion)
-{
-    const auto& weights = input.surface.weights;
-    const std::string influences =
-        fmt::format("{:.1f}", static_cast<double>(weights.node.size()) / static_cast<double>(weights.vertex_count()));
-    input.report.insert(
-        input.report.begin(),
-        {fmt::format("{}: {}, {}", input.name, counted(input.surface.mesh.vertices.size(), "vertex", "vertices"),
-                     counted(input.surface.mesh.triangles.size(), "triangle", "triangles")),
-         fmt::format("{}, {} influences per vertex; {}",
-                     counted(weights.node_count, "simulation node", "simulation nodes"), influences, motion)});
-}
-
-void load_character(Input& input, const InputOptions& options)
-{
-    const Character character = open_character(input, options, Morphs::missing);
-    const bool rest = character.animations.empty() && options.clip.empty();
-    const Character::Animation& animation =
-        rest ? character.rest : choose_clip(character.animations, options.clip, options.input);
-    input.missing = character.missing;
-    input.missing.insert(input.missing.end(), animation.missing.begin(), animation.missing.end());
-    const bool morphs = std::any_of(input.missing.begin(), input.missing.end(),
-                                    [](const std::string& what) { return what.starts_with("morph targets"); });
-    if (!input.missing.empty() && !options.partial)
-        throw InputError::in_file(
-            options.input,
-            fmt::format("has {}; {}--partial bounds the rest, and every result says so", not_modelled(input.missing),
-                        morphs ? "'cinch bake', 'verify --times all' and 'view --swept' have them; " : ""));
-    const Clip clip = sample(character, animation, options.fps > 0 ? options.fps : 30);
-    constexpr std::size_t most_frames =
-        1'000'000; // of which nobody waits for the end; a choice among more is no trouble
-    if (options.frames == 0 && clip.frame_count() > most_frames)
-        throw InputError::in_file(
-            options.input, fmt::format("clip '{}' has {} frames at this rate; --frames chooses some, --fps takes fewer",
-                                       clip.name, grouped(clip.frame_count())));
-    input.clip = evenly_spread(clip, options.frames);
-    if (character.animations.size() > 1 && options.clip.empty())
-        input.report.push_back(
-            fmt::format("{} clips; the first is used, --clip chooses another", character.animations.size()));
-    take_surface(input, character);
-    input.report.insert(input.report.end(), animation.notes.begin(), animation.notes.end());
-    if (!input.missing.empty())
-        input.report.push_back(fmt::format("partial, without {}", fmt::join(input.missing, "; ")));
 }
 
 void load_skin_text(Input& input, const InputOptions& options)
@@ -297,25 +233,6 @@ Input load_input(const InputOptions& options)
         throw InputError::in_file(options.input, "has no triangles; there is nothing to bound");
     head_report(input,
                 fmt::format("motion '{}', {}", input.clip.name, counted(input.clip.frame_count(), "frame", "frames")));
-    return input;
-}
-
-Input load_character_surface(const InputOptions& options, Character& character)
-{
-    Input input;
-    input.name = options.input;
-    guard_surface(options.input);
-    character = open_character(input, options, Morphs::read);
-    input.missing = character.missing;
-    if (!input.missing.empty() && !options.partial)
-        throw InputError::in_file(
-            options.input,
-            fmt::format("has {}; --partial bounds the rest, and every result says so", not_modelled(input.missing)));
-    take_surface(input, character);
-    std::string motion = counted(character.animations.size(), "clip", "clips");
-    if (!character.targets.empty())
-        motion = counted(character.targets.size(), "morph target", "morph targets") + ", " + motion;
-    head_report(input, motion);
     return input;
 }
 

@@ -6,9 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "experiments/report/chart.hpp"
-#include "experiments/report/page/charts.hpp"
-#include "experiments/report/page/page.hpp"
+#include "experiments/report/picture_output.hpp"
 
 namespace cinch {
 namespace {
@@ -48,20 +46,6 @@ void print_csv(const std::vector<Json>& records)
     }
 }
 
-// The records as if they had been read from a file named after their experiment.
-Results results_of(const std::vector<Json>& records, const Json& from)
-{
-    Results results;
-    std::size_t line = 0;
-    for (Json record : records) {
-        record.update(from);
-        const std::string text = dumped(record);
-        const std::string name = record.value("experiment", "records");
-        results.add({{name, ++line}, std::move(record), text});
-    }
-    return results;
-}
-
 } // namespace
 
 std::string json_line(Json record, const Provenance& from)
@@ -86,20 +70,11 @@ void print_note(const Completeness& completeness)
         fmt::print("{}: what follows is of these alone\n\n", completeness.note);
 }
 
+RecordOutput::~RecordOutput() = default;
+
 RecordOutput::RecordOutput(const OutputOptions& options, const Provenance& from)
-    : options_(options), from_(to_json(from))
+    : options_(options), from_(to_json(from)), pictures_(picture_output(options))
 {
-    if (!options.plot.empty()) {
-        picture_of(options.plot);
-        require_gnuplot("--plot");
-        plot_.emplace(options.plot);
-    }
-    if (!options.plot_data.empty())
-        plot_data_.emplace(options.plot_data);
-    if (!options.report.empty()) {
-        require_gnuplot("--report");
-        page_.emplace(options.report);
-    }
 }
 
 void RecordOutput::describe(const Json& input) { input_.update(input); }
@@ -113,7 +88,7 @@ void RecordOutput::add(const Json& record)
           std::pair("complete", Json(completeness_.complete))})
         if (!line.contains(name))
             line[name] = value;
-    if (plot_ || plot_data_ || page_)
+    if (pictures_)
         records_.push_back(line);
     if (options_.csv) {
         rows_.push_back(line);
@@ -131,43 +106,13 @@ void RecordOutput::add_all(const std::vector<Json>& records)
         add(record);
 }
 
-void RecordOutput::draw(const std::vector<Chart>& charts)
-{
-    if (plot_data_) {
-        plot_data_->write(data_of(charts));
-        plot_data_->commit();
-    }
-    if (!plot_ || charts.empty())
-        return;
-    const Picture picture = picture_of(options_.plot);
-    plot_->write(drawn(charts[0], picture, completeness_.note));
-    plot_->commit();
-    const std::size_t dot = options_.plot.rfind('.');
-    for (std::size_t i = 1; i < charts.size(); ++i) {
-        const std::string name = fmt::format("{}-{}{}", options_.plot.substr(0, dot), i + 1, options_.plot.substr(dot));
-        write_whole(name, drawn(charts[i], picture, completeness_.note));
-        fmt::print(stderr, "{}: {}\n", name, charts[i].title);
-    }
-}
-
 void RecordOutput::finish()
 {
     if (options_.csv)
         print_csv(rows_);
     std::fflush(stdout);
-    if (!plot_ && !plot_data_ && !page_)
-        return;
-    const Results results = results_of(records_, from_);
-    std::vector<Chart> charts = charts_;
-    for (const html::ChartFigure& chart : charts_of(results))
-        if (std::any_of(chart.chart.series.begin(), chart.chart.series.end(),
-                        [](const Series& series) { return !series.x.empty(); }))
-            charts.push_back(chart.chart);
-    draw(charts);
-    if (page_) {
-        page_->write(command_page(results, completeness_.note));
-        page_->commit();
-    }
+    if (pictures_)
+        pictures_->write(records_, from_, charts_, completeness_.note);
 }
 
 } // namespace cinch

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <optional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -9,7 +9,6 @@
 
 #include "experiments/report/chart.hpp"
 #include "experiments/report/provenance.hpp"
-#include "experiments/report/whole_file.hpp"
 
 namespace cinch {
 
@@ -38,12 +37,15 @@ Completeness completeness_in_frames(std::size_t done, std::size_t wanted);
 /// The note, where there is one, as the first line of a table on standard output.
 void print_note(const Completeness& completeness);
 
+class PictureOutput;
+
 /// The records of a command: JSON objects, each with its completeness and the provenance added. As JSON Lines they are
 /// printed as they come; CSV, charts and the page follow when all are there.
 class RecordOutput {
 public:
     /// To be made before measuring: throws InputError if gnuplot is missing, or a file cannot be written.
     RecordOutput(const OutputOptions& options, const Provenance& from);
+    ~RecordOutput();
     /// The completeness of the records added from here on; a record's own fields of these names go before. The last one
     /// is also that of charts and page.
     void set(Completeness completeness) { completeness_ = std::move(completeness); }
@@ -62,11 +64,9 @@ private:
     nlohmann::ordered_json input_{{"partial", false}, {"missing", nlohmann::ordered_json::array()}};
     nlohmann::ordered_json from_;
     Completeness completeness_;
-    void draw(const std::vector<Chart>& charts);
-
     std::vector<nlohmann::ordered_json> records_, rows_; ///< of charts and page; of CSV, with the provenance
     std::vector<Chart> charts_;
-    std::optional<WholeFile> plot_, plot_data_, page_;
+    std::unique_ptr<PictureOutput> pictures_;
 };
 
 /// A record of this provenance, as one line of text.

@@ -66,6 +66,12 @@ std::string mesh_extensions(std::string_view others)
 
 bool is_mesh_file(const std::filesystem::path& path) { return format_of(path) != nullptr; }
 
+bool is_character_file(const std::filesystem::path& path)
+{
+    const std::string extension = lower_extension(path);
+    return extension == ".glb" || extension == ".gltf" || extension == ".vrm";
+}
+
 MeshFile read_mesh(const std::filesystem::path& path)
 {
     const MeshFormat* const format = format_of(path);

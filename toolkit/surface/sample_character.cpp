@@ -148,14 +148,6 @@ bool moves_targets(const Character& character, const Character::Animation& anima
     return false;
 }
 
-bool is_character_file(const std::filesystem::path& path)
-{
-    std::string extension = path.extension().string();
-    for (char& c : extension)
-        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return extension == ".glb" || extension == ".gltf" || extension == ".vrm";
-}
-
 DeformableSurface surface_of(const Character& character, WeightReport* report)
 {
     DeformableSurface surface{character.mesh, to_dyadic(character.influences, report)};

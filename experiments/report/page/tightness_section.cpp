@@ -11,14 +11,14 @@ using html::cell;
 using html::figure;
 using html::percent;
 
-constexpr const char* scene = "brain-pull";
+constexpr const char* shown_scene = "brain-pull";
 constexpr std::size_t nodes = 509;
 
 /// Of the root in the whole run, whose looseness is attributed; sweeps over simulation nodes have coarser trees.
 Traced root(const Results& results, const char* method, const char* field)
 {
-    for (const Record* r :
-         results.where({{"experiment", "tightness"}, {"input", scene}, {"method", method}, {"n", nodes}, {"level", 0}}))
+    for (const Record* r : results.where(
+             {{"experiment", "tightness"}, {"input", shown_scene}, {"method", method}, {"n", nodes}, {"level", 0}}))
         if (r->fields.contains("box_loss"))
             return Results::number(*r, field);
     return {};
@@ -26,8 +26,8 @@ Traced root(const Results& results, const char* method, const char* field)
 
 Traced root_of_sweep(const Results& results, const char* method, std::size_t n)
 {
-    for (const Record* r :
-         results.where({{"experiment", "tightness"}, {"input", scene}, {"method", method}, {"n", n}, {"level", 0}}))
+    for (const Record* r : results.where(
+             {{"experiment", "tightness"}, {"input", shown_scene}, {"method", method}, {"n", n}, {"level", 0}}))
         if (!r->fields.contains("box_loss"))
             return Results::number(*r, "mean_ratio");
     return {};
@@ -114,7 +114,7 @@ std::string attribution(const Results& results)
     for (const char* method : {"eq12", "limited", "best"}) {
         std::vector<const Record*> levels;
         for (const Record* r :
-             results.where({{"experiment", "tightness"}, {"input", scene}, {"method", method}, {"n", nodes}}))
+             results.where({{"experiment", "tightness"}, {"input", shown_scene}, {"method", method}, {"n", nodes}}))
             if (r->fields.contains("box_loss"))
                 levels.push_back(r);
         std::vector<std::string> rows;
@@ -181,7 +181,7 @@ std::vector<Claim> tightness_claims(const Results& results)
 Section tightness_section(const Results& results)
 {
     Section section{"fig-5", "Figs. 1 and 5: tightness", "", {}};
-    if (!results.where({{"experiment", "tightness"}, {"input", scene}, {"n", nodes}}).empty()) {
+    if (!results.where({{"experiment", "tightness"}, {"input", shown_scene}, {"n", nodes}}).empty()) {
         const Traced spheres_eq12 = root(results, "sphere", "max_ratio") / root(results, "eq12", "max_ratio"),
                      spheres_best = root(results, "sphere", "max_ratio") / root(results, "best", "max_ratio");
         std::vector<std::string> blocks;
