@@ -348,6 +348,13 @@ nlohmann::ordered_json make_view(const ViewRequest& request)
                                   {"nodes", body.input.surface.weights.node_count},
                                   {"drawn_nodes", body.input.nodes.size()}});
     view["kdop"] = request.kdop;
+    const auto all = axes_of(request.kdop);
+    for (const int k : kdops) { // those that the bounds have all axes of
+        const auto axes = axes_of(k);
+        if (std::all_of(axes.begin(), axes.end(),
+                        [&](const Axis& axis) { return std::find(all.begin(), all.end(), axis) != all.end(); }))
+            view["axes"][std::to_string(k)] = std::vector(axes.begin(), axes.end());
+    }
     view["bvs"] = {{"level", bvs.level}, {"first", bvs.first}, {"count", bvs.count}};
     {
         const auto positions = evaluate(bodies, timed, frames, request.scene);

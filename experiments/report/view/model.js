@@ -29,7 +29,7 @@ class Model {
     }
 
     // Those k that the bounds have all axes of.
-    kdops() { return [6, 14, 18, 26].filter(k => axesOf(k).every(a => axesOf(this.kdop).includes(a))); }
+    kdops() { return Object.keys(this.data.axes).map(Number); }
 
     positionsOf(frame) { return this.positions.subarray(3 * this.vertices * frame, 3 * this.vertices * (frame + 1)); }
 
@@ -42,9 +42,9 @@ class Model {
 
     // Supports of a bound along the axes of k.
     bound(method, frame, bv, k) {
-        const own = axesOf(this.kdop), first = (frame * this.data.bvs.first.length + bv) * this.kdop;
-        return axesOf(k).flatMap(axis => {
-            const at = first + 2 * own.indexOf(axis);
+        const own = this.data.axes[this.kdop].map(String), first = (frame * this.data.bvs.first.length + bv) * this.kdop;
+        return this.data.axes[k].flatMap(axis => {
+            const at = first + 2 * own.indexOf(String(axis));
             return [this.bounds[method][at], this.bounds[method][at + 1]];
         });
     }
@@ -52,8 +52,7 @@ class Model {
     // The same of the tight one: of the vertices as they are drawn.
     truth(frame, bv, k) {
         const positions = this.positionsOf(frame), first = 3 * this.data.bvs.first[bv], last = first + 3 * this.data.bvs.count[bv];
-        return axesOf(k).flatMap(axis => {
-            const [a, b, c] = allAxes[axis];
+        return this.data.axes[k].flatMap(([a, b, c]) => {
             let most = -Infinity, least = Infinity;
             for (let i = first; i < last; ++i) {
                 const at = 3 * this.corners[i], x = a * positions[at] + b * positions[at + 1] + c * positions[at + 2];
@@ -83,7 +82,7 @@ class Model {
 
     // The BVs of a level in a frame: faces of bound and truth, and how much greater the bound is. null: not known.
     volumes({method, frame, level, k}) {
-        const {level: first} = this.data.bvs, out = [], axes = axesOf(k);
+        const {level: first} = this.data.bvs, out = [], axes = this.data.axes[k];
         for (let bv = first[level]; bv < first[level + 1]; ++bv) {
             const supports = this.bound(method, frame, bv, k);
             const truth = polytope(this.truth(frame, bv, k), axes), of = measures(truth);

@@ -1,15 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// k-DOPs as polytopes. Axes as in toolkit/bounds/directions.hpp; supports[2a] is the most along axis a, supports[2a + 1] against it.
-
-const allAxes = [[1, 0, 0], [0, 1, 0], [0, 0, 1],
-                 [1, 1, 1], [1, 1, -1], [1, -1, 1], [1, -1, -1],
-                 [1, 1, 0], [1, 0, 1], [0, 1, 1], [1, -1, 0], [1, 0, -1], [0, 1, -1]];
-
-// Indices into allAxes.
-function axesOf(k) {
-    const faces = [0, 1, 2], corners = [3, 4, 5, 6], edges = [7, 8, 9, 10, 11, 12];
-    return {6: faces, 14: faces.concat(corners), 18: faces.concat(edges), 26: faces.concat(corners, edges)}[k];
-}
+// k-DOPs as polytopes: supports[2a] is the most along axis a, supports[2a + 1] against it.
 
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const minus = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
@@ -64,12 +54,12 @@ function clip(faces, n, d, near) {
     return kept;
 }
 
-// Faces of the polytope with these supports along `axes` (indices, the coordinate axes first).
+// Faces of the polytope with these supports along `axes`, the coordinate axes first.
 function polytope(supports, axes) {
     const near = 1e-6 + 1e-10 * Math.max(...supports.map(Math.abs));
     let faces = boxFaces(supports);
     for (let a = 3; a < axes.length; ++a) {
-        const n = allAxes[axes[a]];
+        const n = axes[a];
         faces = clip(faces, n, supports[2 * a], near);
         faces = clip(faces, n.map(x => -x), supports[2 * a + 1], near);
     }
