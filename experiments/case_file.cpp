@@ -3,6 +3,8 @@
 
 #include <charconv>
 #include <cmath>
+#include <iostream>
+#include <iterator>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -129,6 +131,8 @@ Case parse_case(const std::string& text, const std::string& file)
 
 Case read_case(const std::filesystem::path& path)
 {
+    if (path == "-")
+        return parse_case({std::istreambuf_iterator<char>(std::cin), {}}, "standard input");
     std::error_code error;
     const std::filesystem::path shipped = shipped_folder("cases") / (path.string() + ".json");
     const bool known = path.has_filename() && !path.has_parent_path() && !std::filesystem::exists(path, error) &&

@@ -22,7 +22,7 @@ void add_corners(CLI::App& app, Run& run)
     CLI::App& command = *app.add_subcommand("corners", "true corners of a weight space, and maxima");
     command.callback([options, &run] { run = [options] { return corners(*options); }; });
     const auto option = options_of(command);
-    option("CASE", o.files, "case files, see below, or names of shipped cases (data/cases)")
+    option("CASE", o.files, "case files, see below, names of shipped cases (data/cases), or - for standard input")
         ->required()
         ->option_text("FILE...");
     add_output(command, o.output, Draws::nothing);

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <fstream>
+#include <iostream>
+#include <sstream>
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "experiments/case_file.hpp"
 #include "tests/support.hpp"
 
 using namespace cinch;
@@ -71,6 +74,18 @@ TEST_CASE("every hostile case has one of its expected outcomes, within a second 
         ++cases;
     }
     CHECK(cases >= 9);
+}
+
+TEST_CASE("a case is read from standard input")
+{
+    std::istringstream text(R"({"n":2,"l":[0.25,0],"h":[0.5,1],"b":[[1,2]]})"), none;
+    std::streambuf* const before = std::cin.rdbuf(text.rdbuf());
+    const Case read = read_case("-");
+    std::cin.rdbuf(none.rdbuf());
+    CHECK_THROWS_WITH(read_case("-"), Catch::Contains("standard input"));
+    std::cin.rdbuf(before);
+    CHECK(read.l == std::vector<double>{0.25, 0});
+    CHECK(read.b == std::vector<std::vector<double>>{{1, 2}});
 }
 
 TEST_CASE("corners are listed as fractions, up to a limit")

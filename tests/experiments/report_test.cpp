@@ -12,6 +12,7 @@
 #include "experiments/report/record_output.hpp"
 #include "experiments/report/results.hpp"
 #include "experiments/report/stages.hpp"
+#include "experiments/report/table.hpp"
 #include "tests/support.hpp"
 
 using namespace cinch;
@@ -93,6 +94,23 @@ std::size_t checked_links(const std::string& page)
 }
 
 } // namespace
+
+TEST_CASE("a table that is wider than the terminal becomes several, with every cell and the first column in each")
+{
+    const std::vector<std::string> header{"level", "BVs", "mean ratio", "max", "levels of all kinds"};
+    const std::vector<std::vector<std::string>> rows{{"0", "1", "1.148", "2", "a"}, {"10", "1,024", "3", "4", "bc"}};
+    const std::string whole_table = "level   BVs mean ratio max levels of all kinds\n"
+                                    "    0     1      1.148   2                   a\n"
+                                    "   10 1,024          3   4                  bc\n";
+    CHECK(table(header, rows, 0) == whole_table);
+    CHECK(table(header, rows, 47) == whole_table);
+    CHECK(table(header, rows, 46) ==
+          "level   BVs mean ratio max\n    0     1      1.148   2\n   10 1,024          3   4\n\n"
+          "level levels of all kinds\n    0                   a\n   10                  bc\n");
+    CHECK(table(header, rows, 1).size() > whole_table.size()); // a column each, whatever its width
+    CHECK(table({"n"}, {{"1"}}, 1) == "n\n1\n");
+    CHECK(table({}, {}, 1) == "\n");
+}
 
 TEST_CASE("a figure carries every line that it is computed from")
 {
