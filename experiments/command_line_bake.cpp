@@ -62,6 +62,7 @@ void add_bake(CLI::App& app, Run& run)
            "write what experiments/check_certificate.py needs to prove every bound of every BV; compressed if it ends "
            "in .gz")
         ->option_text("FILE");
+    add_shards(command, o.shards);
     CLI::Option* json = command.add_flag("--json", o.output.json, "JSON Lines on standard output and nothing else");
     command.add_flag("--csv", o.output.csv, "the same as comma-separated values")->excludes(json);
     option("--sabotage", o.sabotage,
@@ -84,9 +85,10 @@ Examples:
   cinch bake robot.glb --certificate robot.jsonl.gz
   cinch bake robot.glb --engine float32 --joint-error 1e-5 --nlerp
   cinch bake robot.glb --report              how tight, and what frames miss
+  cinch bake robot.glb --prove --out proof   clip by clip, and on after a Ctrl-C
 
 Exit status: 0 done, 1 a bound not proven, 2 bad usage or input, 130 interrupted
-(files are not written).)");
+(of the clips that were done there are results, but no files).)");
 }
 
 } // namespace cinch

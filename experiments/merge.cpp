@@ -9,6 +9,7 @@
 #include "experiments/report/reproduce.hpp"
 #include "experiments/study/study.hpp"
 #ifdef CINCH_EXACT
+#include "experiments/bake/bake.hpp"
 #include "experiments/fuzz/fuzz_rows.hpp"
 #include "experiments/tightness/tightness.hpp"
 #include "experiments/verify_rows.hpp"
@@ -28,6 +29,8 @@ int merge_shards(const MergeOptions& options)
     if (all.campaign.command == "collide")
         return print_collide(all, options.output);
 #ifdef CINCH_EXACT
+    if (all.campaign.command == "bake")
+        return print_bake(all, options.output);
     if (all.campaign.command == "verify")
         return print_verify(all, options.output, options.folder);
     if (all.campaign.command == "tightness")

@@ -3,6 +3,7 @@
 
 #include "cinch/refit.hpp"
 #include "experiments/input.hpp"
+#include "experiments/records/run_campaign.hpp"
 #include "experiments/report/record_output.hpp"
 #include "toolkit/time/engine.hpp"
 
@@ -24,11 +25,15 @@ struct BakeOptions {
     bool report = false;               ///< figures beside the truth
     int samples = 30;                  ///< of the truth, between two keys
     std::string npz, usd, certificate; ///< files to write; empty: none
+    ShardOptions shards;
     OutputOptions output;
     TimeSabotage sabotage = TimeSabotage::none;
 };
 
 /// Bounds of every BV for all times of clips, written down. Returns the exit status: 0 done, 1 a bound is not proven.
 int bake(const BakeOptions& options);
+
+/// The same of clips that shards have baked (`cinch merge`).
+int print_bake(const Merged& all, const OutputOptions& options);
 
 } // namespace cinch

@@ -199,9 +199,9 @@ std::size_t bvs_down_to(const Bvh& bvh, int level)
     return level < 0 ? bvh.bvs.size() : bvh.level[std::min<std::size_t>(static_cast<std::size_t>(level) + 1, levels)];
 }
 
-std::size_t level_of(const Bvh& bvh, std::size_t bv)
+std::size_t level_of(std::span<const std::uint32_t> levels, std::size_t bv)
 {
-    return static_cast<std::size_t>(std::upper_bound(bvh.level.begin(), bvh.level.end(), bv) - bvh.level.begin()) - 1;
+    return static_cast<std::size_t>(std::upper_bound(levels.begin(), levels.end(), bv) - levels.begin()) - 1;
 }
 
 } // namespace cinch

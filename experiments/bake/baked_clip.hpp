@@ -36,13 +36,13 @@ BakedFigures figures_of(const DeformableSurface& surface, const Bvh& bvh, std::s
 /// Adds Σ_i a_i d_i to rest vertices.
 void displace(std::span<const MorphTarget> targets, std::span<const double> weights, std::vector<Vec3>& vertices);
 
-/// Of a level and those above it.
+/// Of a level and those above it; the level of a BV, given where levels begin (Bvh::level).
 std::size_t bvs_down_to(const Bvh& bvh, int level);
-std::size_t level_of(const Bvh& bvh, std::size_t bv);
+std::size_t level_of(std::span<const std::uint32_t> levels, std::size_t bv);
 
 /// A NumPy archive: per clip NAME/times, n × 2 seconds, NAME/bounds, n × BVs × 2 × 3 (k = 6: least and greatest
 /// corners) or n × BVs × k supports; and the level of every BV.
-void write_npz(const std::string& file, const Bvh& bvh, std::size_t bvs, int kdop,
+void write_npz(const std::string& file, std::span<const std::uint32_t> levels, std::size_t bvs, int kdop,
                const std::vector<std::pair<std::string, std::vector<BakedInterval>>>& clips);
 /// A USD layer: a prim per clip with the character's box as time samples of "extent", in seconds; each sample holds the
 /// intervals on both sides of it, so that any interpolation between two holds the one between them.

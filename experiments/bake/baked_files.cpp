@@ -77,15 +77,15 @@ std::string bytes_of(const std::vector<double>& values)
 
 } // namespace
 
-void write_npz(const std::string& file, const Bvh& bvh, std::size_t bvs, int kdop,
+void write_npz(const std::string& file, std::span<const std::uint32_t> levels, std::size_t bvs, int kdop,
                const std::vector<std::pair<std::string, std::vector<BakedInterval>>>& clips)
 {
     const auto k = static_cast<std::size_t>(kdop);
     Archive archive;
-    std::string levels;
+    std::string of_each;
     for (std::size_t bv = 0; bv < bvs; ++bv)
-        put(levels, static_cast<std::uint32_t>(level_of(bvh, bv)));
-    archive.add("level.npy", npy("<u4", {bvs}, levels));
+        put(of_each, static_cast<std::uint32_t>(level_of(levels, bv)));
+    archive.add("level.npy", npy("<u4", {bvs}, of_each));
     for (const auto& [name, intervals] : clips) {
         std::vector<double> times, bounds;
         for (const BakedInterval& interval : intervals) {

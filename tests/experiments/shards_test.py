@@ -12,6 +12,9 @@ import sys
 import tempfile
 import time
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent / "time"))
+from made_characters import many_clips
+
 cinch = sys.argv[1]
 
 
@@ -138,6 +141,22 @@ compare("fuzz with violations", ["fuzz", "--cases", 8 * 4096, "--sabotage", "low
 with tempfile.TemporaryDirectory() as place:  # and with what a run without cells finds
     damaged = ["fuzz", "--cases", 3 * 4096, "--sabotage", "lower-h", "--json"]
     assert records(run(*damaged, "--out", place, status=1).stdout) == records(run(*damaged, status=1).stdout)
+with tempfile.TemporaryDirectory() as place:
+    baked = ["bake", many_clips(place, 9), "--prove", "--level", -1]
+    compare("bake", baked, [("--json",), ()], kills=0)
+    whole = run(*baked, "--json").stdout
+    assert records(whole) == records(run(*baked, "--json", "--out", place + "/rows").stdout)
+    assert len({row["clip"] for row in records(whole)}) == 9
+    files = [[f"{place}/{run_of}.npz", f"{place}/{run_of}.usda"] for run_of in ("whole", "rows")]
+    for (npz, usd), more in zip(files, ([], ["--out", place + "/rows"])):
+        run(*baked, *more, "--npz", npz, "--usd", usd)
+    for whole, rows in zip(*files):
+        assert pathlib.Path(whole).read_bytes() == pathlib.Path(rows).read_bytes()
+    for more in (["--certificate", place + "/proof"], ["--shard", "0/3", "--npz", place + "/some.npz"]):
+        run(*baked, "--out", place + "/refused", *more, status=2)
+    run(*baked, "--out", place + "/rows", "--whole", status=2)  # another plan
+    run(*baked, "--sabotage", "half-bump", "--out", place + "/damaged", status=1)
+    assert b", 0 violated" not in run("merge", place + "/damaged", status=1).stdout
 with tempfile.TemporaryDirectory() as place:
     scenes = [pathlib.Path(place) / f"two-{i}.json" for i in range(5)]
     box = {"surface": "box", "box": [1, 1, 1], "cells": [4, 4, 4], "nodes": 8, "density": 1000}

@@ -126,6 +126,21 @@ def face(folder, name="face.gltf"):
                 {"sampler": 3, "target": {"node": 0, "path": "rotation"}}]}]})
 
 
+def many_clips(folder, clips):
+    """A bent strip on one joint with clips of their own lengths."""
+    make = Maker()
+    position = make.add([(4 + i % 2, i * 0.05, math.sin(i)) for i in range(300)], "VEC3")
+    animations = []
+    for i in range(clips):
+        times = make.add([(0.1 * i,), (0.5 + 0.2 * i,), (2.0 + 0.3 * i,)], "SCALAR")
+        keys = make.add([turn(0), turn(0.3 + i), turn(-0.2 * i)], "VEC4")
+        animations.append({"name": "turn %d" % i, "samplers": [{"input": times, "output": keys}],
+                           "channels": [{"sampler": 0, "target": {"node": 0, "path": "rotation"}}]})
+    return make.write(folder, "clips.gltf", {
+        "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": position}}]}], "animations": animations})
+
+
 def nothing_to_turn_to(folder):
     """A bone whose rotation has a key of 0, which is the identity that no curve turns to, under one that slides; and
     one of keys that differ by far less than a rounding. The slide is half turned by a quaternion whose square is 0 in

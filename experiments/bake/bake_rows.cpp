@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/bake/bake_rows.hpp"
+
+#include <cmath>
+
+namespace cinch {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double number(const Json& value) { return value.is_null() ? HUGE_VAL : value.get<double>(); }
+Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+
+Json to_json(const BakedFigures& f)
+{
+    return {{"time_mean", f.time_mean},   {"time_max", finite(f.time_max)}, {"root", finite(f.root)},
+            {"leaves", finite(f.leaves)}, {"missed_30fps", f.missed_30fps}, {"missed_keys", f.missed_keys},
+            {"missed", f.missed_by_us},   {"key_segments", f.key_segments}, {"intervals", f.intervals},
+            {"length_s", f.length_s}};
+}
+
+BakedFigures figures_of(const Json& f)
+{
+    return {number(f.at("time_mean")), number(f.at("time_max")), number(f.at("root")), number(f.at("leaves")),
+            f.at("missed_30fps"),      f.at("missed_keys"),      f.at("missed"),       f.at("key_segments"),
+            f.at("intervals"),         f.at("length_s")};
+}
+
+} // namespace
+
+Rows rows_of(const BakedClip& clip)
+{
+    Json head{{"clip", clip.name}, {"t0", clip.first_s}, {"t1", clip.last_s}};
+    if (clip.verdict)
+        head["verdict"] = {clip.verdict->bounds, clip.verdict->violated, clip.verdict->undecided, clip.verdict->pieces};
+    if (!clip.worst.empty())
+        head["worst"] = clip.worst;
+    if (clip.figures)
+        head["figures"] = to_json(*clip.figures);
+    if (clip.cost)
+        head["refits"] = {finite(clip.cost->value), finite(clip.cost->low), finite(clip.cost->high)};
+    Rows rows{std::move(head)};
+    for (const BakedInterval& interval : clip.intervals) {
+        Json supports = Json::array();
+        for (const double s : interval.supports)
+            supports.push_back(finite(s));
+        rows.push_back({{"t0", interval.first_s},
+                        {"t1", interval.last_s},
+                        {"intervals", interval.intervals},
+                        {"supports", std::move(supports)}});
+    }
+    return rows;
+}
+
+BakedClip baked_clip_of(const Rows& rows)
+{
+    const Json& head = rows.front();
+    BakedClip clip{head.at("clip"), head.at("t0"), head.at("t1"), {}, {}, head.value("worst", ""), {}, {}};
+    if (head.contains("verdict")) {
+        const Json& v = head.at("verdict");
+        clip.verdict = {v.at(0), v.at(1), v.at(2), v.at(3), {}};
+    }
+    if (head.contains("figures"))
+        clip.figures = figures_of(head.at("figures"));
+    if (head.contains("refits")) {
+        const Json& r = head.at("refits");
+        clip.cost = r.at(0).is_null() ? Range(std::nan("")) : Range(number(r.at(0)), number(r.at(1)), number(r.at(2)));
+    }
+    for (std::size_t i = 1; i < rows.size(); ++i) {
+        BakedInterval interval{rows[i].at("t0"), rows[i].at("t1"), {}, rows[i].at("intervals")};
+        for (const Json& s : rows[i].at("supports"))
+            interval.supports.push_back(number(s));
+        clip.intervals.push_back(std::move(interval));
+    }
+    return clip;
+}
+
+Json to_json(const BakedBody& body)
+{
+    return {{"input", body.name},    {"report", body.report},   {"missing", body.missing}, {"fields", body.fields},
+            {"levels", body.levels}, {"written", body.written}, {"clips", body.clips}};
+}
+
+BakedBody baked_body_of(const Json& from)
+{
+    return {from.at("input"),  from.at("report"),  from.at("missing"), from.at("fields"),
+            from.at("levels"), from.at("written"), from.at("clips")};
+}
+
+} // namespace cinch
