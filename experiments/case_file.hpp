@@ -16,10 +16,10 @@ struct Case {
     WeightSpace space() const { return {l, h}; }
 };
 
-/// Of a file, of standard input ("-"), or of a case that comes with the program, by its name without ending. Numbers are JSON numbers, or
-/// strings that are a decimal or hexadecimal floating-point number ("0x1.8p-1"). "b" may be left out; other fields are
-/// passed over. Throws InputError with file, field and index: malformed JSON, lengths that contradict n, numbers that
-/// are none, NaN or infinite, values outside 0 ≤ l ≤ h ≤ 1. An infeasible space is no error.
+/// Of a file, of standard input ("-"), or of a case that comes with the program, by its name without ending. Numbers
+/// are JSON numbers, or strings that are a decimal or hexadecimal floating-point number ("0x1.8p-1"). "b" may be left
+/// out; other fields are passed over. Throws InputError with file, field and index: malformed JSON, lengths that
+/// contradict n, numbers that are none, NaN or infinite, values outside 0 ≤ l ≤ h ≤ 1. An infeasible space is no error.
 Case read_case(const std::filesystem::path& path);
 Case parse_case(const std::string& text, const std::string& file);
 

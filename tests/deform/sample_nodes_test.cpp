@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+
 #include <catch2/catch.hpp>
 
 #include "toolkit/deform/sample_nodes.hpp"
@@ -53,6 +55,20 @@ TEST_CASE("kernel weights: every vertex is reached, weights fall with distance")
     const Weights lonely = kernel_weights(sphere, nodes, 0.01, &alone);
     CHECK(alone > 1900);
     CHECK(lonely.weight.size() >= 2000);
+}
+
+TEST_CASE("meshes whose squared distances overflow still get distinct points of theirs")
+{
+    TriangleMesh huge = ring_sphere(60);
+    for (Vec3& v : huge.vertices)
+        v *= 1e200;
+    const SimulationNodes nodes = sample_nodes(huge, 8, 0);
+    REQUIRE(nodes.position.size() == 8);
+    for (std::size_t i = 0; i < 8; ++i) {
+        CHECK(std::find(huge.vertices.begin(), huge.vertices.end(), nodes.position[i]) != huge.vertices.end());
+        CHECK(std::find(nodes.position.begin(), nodes.position.begin() + static_cast<std::ptrdiff_t>(i),
+                        nodes.position[i]) == nodes.position.begin() + static_cast<std::ptrdiff_t>(i));
+    }
 }
 
 TEST_CASE("flat, tiny and degenerate meshes still get nodes")

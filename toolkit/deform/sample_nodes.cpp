@@ -28,8 +28,9 @@ void lower_distances(const std::vector<Vec3>& points, const Vec3& node, std::vec
 // bits depends on the unit of length.
 std::size_t farthest(const std::vector<double>& squared)
 {
-    const double most = *std::max_element(squared.begin(), squared.end()), tied = most - most * 0x1p-40;
-    return static_cast<std::size_t>(std::find_if(squared.begin(), squared.end(), [&](double x) { return x >= tied; }) -
+    const auto most = std::max_element(squared.begin(), squared.end());
+    const double tied = std::isfinite(*most) ? *most - *most * 0x1p-40 : *most; // squares may overflow
+    return static_cast<std::size_t>(std::find_if(squared.begin(), most, [&](double x) { return x >= tied; }) -
                                     squared.begin());
 }
 
