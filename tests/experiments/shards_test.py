@@ -13,7 +13,7 @@ import tempfile
 import time
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent / "time"))
-from made_characters import many_clips
+from made_characters import many_clips, through_zero
 
 cinch = sys.argv[1]
 
@@ -142,6 +142,9 @@ with tempfile.TemporaryDirectory() as place:  # and with what a run without cell
     damaged = ["fuzz", "--cases", 3 * 4096, "--sabotage", "lower-h", "--json"]
     assert records(run(*damaged, "--out", place, status=1).stdout) == records(run(*damaged, status=1).stdout)
 with tempfile.TemporaryDirectory() as place:
+    for more in ([], ["--out", place + "/infinite"], ["--out", place + "/infinite"]):  # the last one from its rows
+        box, = records(run("bake", through_zero(place), "--json", "--whole", *more).stdout)
+        assert box["min"] == box["max"] == [None] * 3, box
     baked = ["bake", many_clips(place, 9), "--prove", "--level", -1]
     compare("bake", baked, [("--json",), ()], kills=0)
     whole = run(*baked, "--json").stdout

@@ -141,6 +141,20 @@ def many_clips(folder, clips):
         "meshes": [{"primitives": [{"attributes": {"POSITION": position}}]}], "animations": animations})
 
 
+def through_zero(folder):
+    """A spline of rotations that passes 0, where no rotation is: nothing bounds it."""
+    make, zero = Maker(), (0, 0, 0, 0)
+    position = make.add([(5, 0, 0), (5, 1, 0), (5, 0, 1)], "VEC3")
+    times = make.add([(0.0,), (1.0,)], "SCALAR")
+    keys = make.add([zero, (0, 0, 0, 1), zero, zero, (0, 0, 0, -1), zero], "VEC4")
+    return make.write(folder, "zero.gltf", {
+        "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": position}}]}],
+        "animations": [{"name": "turn", "samplers": [{"input": times, "output": keys,
+                                                      "interpolation": "CUBICSPLINE"}],
+                        "channels": [{"sampler": 0, "target": {"node": 0, "path": "rotation"}}]}]})
+
+
 def nothing_to_turn_to(folder):
     """A bone whose rotation has a key of 0, which is the identity that no curve turns to, under one that slides; and
     one of keys that differ by far less than a rounding. The slide is half turned by a quaternion whose square is 0 in

@@ -29,7 +29,7 @@ void lower_distances(const std::vector<Vec3>& points, const Vec3& node, std::vec
 std::size_t farthest(const std::vector<double>& squared)
 {
     const auto most = std::max_element(squared.begin(), squared.end());
-    const double tied = std::isfinite(*most) ? *most - *most * 0x1p-40 : *most; // squares may overflow
+    const double tied = *most - *most * 0x1p-40; // NaN where squares overflow, which nothing ties with
     return static_cast<std::size_t>(std::find_if(squared.begin(), most, [&](double x) { return x >= tied; }) -
                                     squared.begin());
 }
