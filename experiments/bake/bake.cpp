@@ -233,7 +233,7 @@ public:
                 clip.cost = refits_per_interval(body_, bvh_, options_.bounds);
         }
         for (BakedInterval& interval : clip.intervals)
-            interval.supports.resize(body().written * k);
+            interval.supports.resize(bvs_down_to(bvh_, options_.level) * k);
         return rows_of(clip);
     }
 
