@@ -8,7 +8,7 @@
 #include "experiments/command_line.hpp"
 #include "experiments/command_line_options.hpp"
 #include "experiments/report/table.hpp"
-#include "experiments/scaling.hpp"
+#include "experiments/scaling/scaling.hpp"
 #include "experiments/shipped.hpp"
 #include "experiments/simulation/cost_simulation.hpp"
 #include "experiments/simulation/simulate.hpp"
@@ -34,6 +34,7 @@ void add_scaling(CLI::App& app, Run& run)
         ->check(within(0.001, 1e6))
         ->option_text("X");
     command.add_option("--seed", o.seed, wrapped("seed of everything random [0]"))->option_text("N");
+    add_shards(command, o.shards);
     add_output(command, o.output);
     command.footer(R"(Examples:
   cinch scaling                        table and figures, about half a minute

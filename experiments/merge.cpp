@@ -7,6 +7,7 @@
 #include "experiments/collide/collide.hpp"
 #include "experiments/records/row_folder.hpp"
 #include "experiments/report/reproduce.hpp"
+#include "experiments/scaling/scaling.hpp"
 #include "experiments/study/study.hpp"
 #ifdef CINCH_EXACT
 #include "experiments/bake/bake.hpp"
@@ -26,6 +27,8 @@ int merge_shards(const MergeOptions& options)
         print_study(all, options.output);
         return 0;
     }
+    if (all.campaign.command == "scaling")
+        return print_scaling(all, options.output);
     if (all.campaign.command == "collide")
         return print_collide(all, options.output);
 #ifdef CINCH_EXACT

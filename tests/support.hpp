@@ -3,6 +3,8 @@
 
 #include <filesystem>
 #include <optional>
+#include <ranges>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,6 +33,11 @@ std::optional<std::filesystem::path> shared(const std::string& name);
 double test_share();
 /// Of so many cases, but at least one, and all from a share of 1 on.
 std::size_t share_of(std::size_t cases);
+/// The first ones of a list, which must outlive the result.
+template <std::ranges::contiguous_range List> auto share_of(List& cases)
+{
+    return std::span(cases).first(share_of(std::size(cases)));
+}
 
 struct Run {
     int status = -1;

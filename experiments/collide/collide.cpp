@@ -131,7 +131,7 @@ Json plan_of(const CollideOptions& options, const std::vector<SceneCell>& cells,
             {"seed", options.seed},     {"checksums", sums}};
 }
 
-std::vector<SceneResult> results_of(const Merged& all)
+std::vector<SceneResult> scenes_of(const Merged& all)
 {
     std::vector<SceneResult> results;
     for (const Rows& cell : all.cells)
@@ -168,13 +168,15 @@ Completeness completeness_of(const std::vector<SceneResult>& results, std::size_
 int print_results(const Merged& all, const OutputOptions& options, const Provenance& from)
 {
     const bool cold = all.campaign.plan.at("cold");
-    const std::vector<SceneResult> results = results_of(all);
+    const std::vector<SceneResult> results = scenes_of(all);
     const Completeness completeness = completeness_of(results, all.cells.size());
     RecordOutput output(options, from);
     output.set(completeness);
+    Rows records;
     for (const SceneResult& r : results)
         for (const Measured& m : r.backends)
-            output.add(record(r, m, cold));
+            records.push_back(record(r, m, cold));
+    output.add_all(records);
     for (const Figure& f : figures_of(results, cold))
         output.add(record_of(f, "collide"));
     for (const Slope& s : slopes_of(results))
@@ -182,7 +184,7 @@ int print_results(const Merged& all, const OutputOptions& options, const Provena
     output.finish();
     if (!options.records_only()) {
         print_note(completeness);
-        print_tables(results, cold);
+        print_tables(results, results_of(records, Json::object()), cold);
         fmt::print("{}\n", describe(from));
     }
     if (!differ(results))
@@ -222,7 +224,7 @@ int collide(const CollideOptions& options)
                 throw CutShort{{}, Rows{to_json(result)}};
             return Rows{to_json(result)};
         });
-    return end_run(run, options.shards, differ(results_of(run.all)) ? 1 : 0, [&] {
+    return end_run(run, options.shards, differ(scenes_of(run.all)) ? 1 : 0, [&] {
         if (options.shards.folder.empty())
             print_results(run.all, options.output, here);
         else

@@ -102,8 +102,10 @@ Json record(const SceneResult& r, const Measured& m, bool cold)
              {"pairs", m.pairs},
              {"pairs_differing", m.differing},
              {"megabytes_per_body", m.megabytes}};
-    if (const Measured* full = r.of("refit-1"))
-        out["gain"] = full->total_ms / m.total_ms;
+    if (const Measured* full = r.of("refit-1")) {
+        const Range gain = full->total() / m.total();
+        out.update({{"gain", gain.value}, {"gain_low", gain.low}, {"gain_high", gain.high}});
+    }
     if (m.counts) {
         const QueryCounts& c = m.sums;
         const double frames = static_cast<double>(m.frames),

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "experiments/report/collide_figures.hpp"
 #include "experiments/report/number.hpp"
 #include "experiments/report/paper_figures.hpp"
 #include "experiments/report/record_output.hpp"
@@ -20,21 +21,8 @@ std::string ms(double x)
 {
     return x < 10 ? fmt::format("{:.3f}", x) : x < 100 ? fmt::format("{:.1f}", x) : fmt::format("{:.0f}", x);
 }
+std::string ms(const Traced& x) { return x.known() ? ms(x.value) : "-"; }
 std::string times(double x) { return x < 10 ? fmt::format("{:.2f}", x) : fmt::format("{:.0f}", x); }
-
-// Place in Table 2, 1 to 8; 0 for other scenes.
-std::size_t ring(const std::string& scene)
-{
-    return scene.size() == 12 && scene.starts_with("santa-ring-") && scene.back() >= '1' && scene.back() <= '8'
-               ? static_cast<std::size_t>(scene.back() - '0')
-               : 0;
-}
-
-// Of the paper's Table 3, which has one for two scenes: they differ in simulation nodes only.
-std::string row_of_table_3(std::size_t ring)
-{
-    return fmt::format("{}, {}", (ring - 1) / 2 * 2 + 1, (ring - 1) / 2 * 2 + 2);
-}
 
 // "60", or "12 of 60" after an interrupt.
 std::string frames_of(const Measured& m)
@@ -56,27 +44,26 @@ void print_scenes(const std::vector<SceneResult>& results)
                table({"scene", "bodies", "vertices", "nodes", "pairs: median", "most", "frames"}, rows));
 }
 
-void print_table_3(const std::vector<SceneResult>& results)
+void print_table_3(const std::vector<SceneResult>& scenes, const Results& records, bool cold)
 {
     Lines rows;
-    for (const SceneResult& r : results) {
-        const Measured *full = r.of("refit-1"), *hash = r.of("hash");
-        if (!full && !hash)
+    for (const SceneResult& r : scenes) {
+        const CollideTimes full = collide_times(records, r.scene, "refit-1", cold),
+                           hash = collide_times(records, r.scene, "hash", cold);
+        if (!full.known() && !hash.known())
             continue;
-        std::vector<std::string> row{r.scene};
-        for (const Measured* m : {full, hash})
-            for (const double x :
-                 m ? std::vector{m->evaluate_ms + m->update_ms, m->query_ms, m->total_ms} : std::vector<double>(3, NAN))
-                row.push_back(std::isnan(x) ? "-" : ms(x));
-        const std::size_t n = ring(r.scene);
+        const int ring = ring_of(r.scene);
         auto paper = [&](const char* column) {
-            return fmt::format("{:.0f}", paper_figure("Table 3", row_of_table_3(n), column).value);
+            return fmt::format("{:.0f}", paper_figure("Table 3", row_of_table_3(ring), column).value);
         };
         const double fishes =
             paper_figure("Fig. 7", "fishes", "full refit").value + paper_figure("Fig. 7", "fishes", "full query").value;
-        row.push_back(n ? paper("total") : r.scene == "fishes" ? fmt::format("{:.0f}", fishes) : "-");
-        row.push_back(n ? paper("hash total") : "-");
-        rows.push_back(row);
+        rows.push_back({r.scene, ms(full.refit), ms(full.query), ms(full.total), ms(hash.refit), ms(hash.query),
+                        ms(hash.total),
+                        ring                  ? paper("total")
+                        : r.scene == "fishes" ? fmt::format("{:.0f}", fishes)
+                                              : "-",
+                        ring ? paper("hash total") : "-"});
     }
     if (rows.empty())
         return;
@@ -85,23 +72,24 @@ void print_table_3(const std::vector<SceneResult>& results)
                table({"scene", "refit", "query", "total", "load", "query", "total", "paper", "paper"}, rows));
 }
 
-void print_table_4(const std::vector<SceneResult>& results)
+void print_table_4(const std::vector<SceneResult>& scenes, const Results& records, bool cold)
 {
     Lines rows;
-    for (const SceneResult& r : results) {
-        const Measured *full = r.of("refit-1"), *aabb = r.of("eq12-aabb"), *obb = r.of("eq12-obb-14");
-        if (!aabb && !obb)
+    for (const SceneResult& r : scenes) {
+        const CollideTimes aabb = collide_times(records, r.scene, "eq12-aabb", cold),
+                           obb = collide_times(records, r.scene, "eq12-obb-14", cold);
+        if (!aabb.known() && !obb.known())
             continue;
         std::vector<std::string> row{r.scene};
-        const std::size_t n = ring(r.scene);
-        for (const Measured* m : {aabb, obb}) {
-            const double gain = n ? paper_figure("Table 4", std::to_string(n), m == aabb ? "gain" : "OBB gain").value
-                                : r.scene == "fishes" && m == aabb ? paper_figure("Fig. 7", "fishes", "gain").value
-                                                                   : 0;
-            row.push_back(m ? ms(m->update_ms) : "-");
-            row.push_back(m ? ms(m->query_ms) : "-");
-            row.push_back(m ? ms(m->total_ms) : "-");
-            row.push_back(m && full ? times(full->total_ms / m->total_ms) : "-");
+        const int ring = ring_of(r.scene);
+        for (const CollideTimes* t : {&aabb, &obb}) {
+            const double gain =
+                ring ? paper_figure("Table 4", std::to_string(ring), t == &aabb ? "gain" : "OBB gain").value
+                : r.scene == "fishes" && t == &aabb ? paper_figure("Fig. 7", "fishes", "gain").value
+                                                    : 0;
+            for (const Traced& x : {t->refit, t->query, t->total})
+                row.push_back(ms(x));
+            row.push_back(t->gain.known() ? times(t->gain.value) : "-");
             row.push_back(gain > 0 ? times(gain) : "-");
         }
         rows.push_back(row);
@@ -214,7 +202,7 @@ std::vector<Figure> figures_of(const std::vector<SceneResult>& results, bool col
     for (const SceneResult& r : results) {
         const Measured *own = r.of("cinch"), *embree = r.of("embree"), *refit = r.of("refit-16"),
                        *full = r.of("cinch-full");
-        const std::size_t n = ring(r.scene);
+        const int n = ring_of(r.scene);
         if (!own)
             continue;
         const double share = cold ? 0.5 : 1;
@@ -271,11 +259,11 @@ std::vector<Slope> slopes_of(const std::vector<SceneResult>& results)
     return slopes;
 }
 
-void print_tables(const std::vector<SceneResult>& results, bool cold)
+void print_tables(const std::vector<SceneResult>& results, const Results& records, bool cold)
 {
     print_scenes(results);
-    print_table_3(results);
-    print_table_4(results);
+    print_table_3(results, records, cold);
+    print_table_4(results, records, cold);
     for (const SceneResult& r : results)
         print_backends(r);
     fmt::print(

@@ -6,6 +6,7 @@
 
 #include "experiments/collide/measure.hpp"
 #include "experiments/measure/race.hpp"
+#include "experiments/report/results.hpp"
 
 namespace cinch {
 
@@ -31,7 +32,7 @@ struct Slope {
 };
 std::vector<Slope> slopes_of(const std::vector<SceneResult>& results);
 
-/// Tables 2 to 4 and Fig. 7 beside the paper's figures, every backend, counts, figures, slopes.
-void print_tables(const std::vector<SceneResult>& results, bool cold);
+/// Tables 2 to 4 and Fig. 7 beside the paper's figures, every backend, counts, figures, slopes. `records`: of the same.
+void print_tables(const std::vector<SceneResult>& results, const Results& records, bool cold);
 
 } // namespace cinch

@@ -16,20 +16,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The records as if they had been read from a file named after their experiment.
-Results results_of(const std::vector<Json>& records, const Json& from)
-{
-    Results results;
-    std::size_t line = 0;
-    for (Json record : records) {
-        record.update(from);
-        const std::string text = record.dump(-1, ' ', false, Json::error_handler_t::replace);
-        const std::string name = record.value("experiment", "records");
-        results.add({{name, ++line}, std::move(record), text});
-    }
-    return results;
-}
-
 class Files : public PictureOutput {
 public:
     explicit Files(const OutputOptions& options) : options_(options)

@@ -78,6 +78,17 @@ Traced operator/(double a, const Traced& b) { return Traced{a, {}} / b; }
 Traced operator-(double a, const Traced& b) { return Traced{a, {}} - b; }
 Traced operator/(const Traced& a, double b) { return a / Traced{b, {}}; }
 
+Results results_of(const std::vector<Json>& records, const Json& from)
+{
+    Results results;
+    for (Json record : records) {
+        record.update(from);
+        const std::string text = record.dump(-1, ' ', false, Json::error_handler_t::replace);
+        results.add({{record.value("experiment", "records"), results.all().size() + 1}, std::move(record), text});
+    }
+    return results;
+}
+
 Traced mean(const std::vector<Traced>& all)
 {
     Traced sum{0, {}};

@@ -70,6 +70,10 @@ private:
     std::deque<Record> records_;
 };
 
+/// Of records that a command made just now, each with the fields of `from` too, as if they had been read from a file
+/// named after their experiment.
+Results results_of(const std::vector<nlohmann::ordered_json>& records, const nlohmann::ordered_json& from);
+
 /// What is wrong with a results file. Line 0: the file as a whole.
 struct Damage {
     std::string file; ///< with its ending

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "tests/collide/random_bodies.hpp"
+#include "tests/support.hpp"
 #include "toolkit/collide/collider_parts.hpp"
 
 using namespace cinch;
@@ -198,7 +199,8 @@ TEST_CASE("scales from subnormal to where floats and doubles overflow")
 
 TEST_CASE("one vertex far off the others: what overflows in a part of a body does not hide the rest")
 {
-    for (const double far : {1e10, 1e30, 1e38, 3e38, 1e39, 1e100, 1e300}) {
+    constexpr double places_far[] = {1e39, 1e10, 1e30, 1e38, 3e38, 1e100, 1e300};
+    for (const double far : share_of(places_far)) {
         Bodies bodies;
         for (int b = 0; b < 2; ++b)
             bodies.surface.push_back(soft(ring_sphere(200), 8));
@@ -330,7 +332,8 @@ TEST_CASE("nothing, one triangle, points and segments, all centroids alike, soup
         bodies.add_frame(maps);
     }
     CHECK(pairs_of(bodies) > 1000);
-    for (const ClusterSize leaf : {ClusterSize{16, 16}, ClusterSize{8, 8}, ClusterSize{1, 3}, ClusterSize{4, 5}})
+    const ClusterSize leaves[] = {{4, 5}, {16, 16}, {8, 8}, {1, 3}};
+    for (const ClusterSize leaf : share_of(leaves))
         check_all(bodies, {}, leaf);
 }
 

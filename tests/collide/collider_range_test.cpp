@@ -15,11 +15,6 @@ namespace {
 
 using Powers = std::array<int, 3>; ///< of two, one per axis
 
-/// Every power at a share of 1 and more, each 1/share-th else.
-int stride() { return test_share() >= 1 ? 1 : static_cast<int>(std::ceil(1 / std::max(test_share(), 1e-3))); }
-/// How often, from a share of 1 on.
-int repeats() { return std::max(1, static_cast<int>(test_share())); }
-
 TriangleMesh mesh_of(const std::vector<TrianglePoints>& triangles)
 {
     TriangleMesh mesh;
@@ -172,7 +167,7 @@ void check_every_power(const Scene& scene, std::uint64_t seed)
         add(*unscaled.back(), scene.surface);
     }
     const Maps identity(1, identity_map);
-    for (int power = least; power <= most; power += stride())
+    for (int power = least; power <= most; power += power_stride())
         for (int i = 0; i < 3 * repeats(); ++i) {
             Powers powers{power, power, power};
             const bool alike = i % 3 < 2;
@@ -245,7 +240,7 @@ TEST_CASE("a body of one size on the surface of a body of another, at every powe
         add(*colliders.back(), surface);
     }
     std::size_t pairs = 0;
-    for (int power = least_size; power <= most_size; power += stride())
+    for (int power = least_size; power <= most_size; power += power_stride())
         for (int i = 0; i < repeats(); ++i) {
             std::array<int, 3> size;
             for (int& s : size)

@@ -158,7 +158,7 @@ TEST_CASE("scenes of one body: pairs of brute force with itself some time before
         INFO(scene);
         CHECK(check_all(against_its_past(simulated(scene, 0, quick ? 25 : 61, 12)),
                         thorough ? options : std::vector{options[0]}) > (quick ? 50u : 100u));
-        if (!thorough && std::string(scene) == "brain-pull-65")
+        if (!thorough && std::string(scene) == (test_share() < 0.1 ? "sheet" : "brain-pull-65"))
             break;
     }
 }

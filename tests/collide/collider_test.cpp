@@ -7,6 +7,7 @@
 
 #include "cinch/bounds.hpp"
 #include "tests/collide/random_bodies.hpp"
+#include "tests/support.hpp"
 #include "toolkit/collide/collider_parts.hpp"
 #include "toolkit/hierarchy/lazy_refit.hpp"
 
@@ -92,7 +93,7 @@ TEST_CASE("the pairs are those of brute force, in the order of the trees, for ev
     REQUIRE(truth[3].empty());
     REQUIRE((truth[5] == truth[4]));
     Dice dice(1);
-    for (const Leaf& leaf : every_leaf) {
+    for (const Leaf& leaf : share_of(every_leaf)) {
         const std::vector<Bvh> trees = bodies.trees(leaf.size, RestDetail::all);
         std::vector<Pairs> order;
         for (const Methods methods : every_method)
@@ -114,7 +115,7 @@ TEST_CASE("the pairs are those of brute force, in the order of the trees, for ev
 {
     const Bodies bodies = three_bodies(260);
     const std::vector<Pairs> truth = bodies.truth();
-    for (const Leaf& leaf : every_leaf) {
+    for (const Leaf& leaf : share_of(every_leaf)) {
         const std::vector<Bvh> trees = bodies.trees(leaf.size);
         std::vector<Pairs> order;
         for (const Update update : every_update)
@@ -133,11 +134,11 @@ TEST_CASE("the pairs are those of brute force, in the order of the trees, for ev
 TEST_CASE("the same pairs in the same order for 1, 2 and 7 threads")
 {
     const tbb::global_control seven(tbb::global_control::max_allowed_parallelism, 7);
-    const Bodies bodies = three_bodies(3000);
+    const Bodies bodies = three_bodies(test_share() < 1 ? 500 : 3000);
     const std::vector<Pairs> truth = bodies.truth();
     const std::vector<Bvh> trees = bodies.trees({16, 16});
     for (const bool keep_cut : {true, false})
-        for (const Update update : every_update) {
+        for (const Update update : share_of(every_update)) {
             LazyOptions options;
             options.update = update;
             options.keep_cut = keep_cut;
@@ -182,7 +183,7 @@ TEST_CASE("vertices may be given instead of transforms, or in turns with them")
     mixed[1] = bodies.frame[by_maps][1];
     bodies.frame.push_back(mixed);
     const std::vector<Pairs> truth = bodies.truth();
-    for (const Leaf& leaf : every_leaf) {
+    for (const Leaf& leaf : share_of(every_leaf)) {
         const std::vector<Bvh> trees = bodies.trees(leaf.size);
         std::vector<Pairs> order;
         for (const int kdop : kdops)
@@ -200,7 +201,7 @@ TEST_CASE("any and leaves: right, stopped where told, and no obstacle for what i
 {
     const Bodies bodies = three_bodies(260);
     const std::vector<Pairs> truth = bodies.truth();
-    for (const Leaf& leaf : every_leaf)
+    for (const Leaf& leaf : share_of(every_leaf))
         for (const bool keep_cut : {true, false})
             for (const Update update : every_update) {
                 LazyOptions options;

@@ -17,11 +17,6 @@ using namespace cinch::test;
 
 namespace {
 
-/// Every power at a share of 1 and more, each 1/share-th else.
-int stride() { return test_share() >= 1 ? 1 : static_cast<int>(std::ceil(1 / std::max(test_share(), 1e-3))); }
-/// How often, from a share of 1 on.
-int repeats() { return std::max(1, static_cast<int>(test_share())); }
-
 /// x·2^power in every coordinate, rounded where it is subnormal.
 TrianglePoints scaled(TrianglePoints t, int power)
 {
@@ -105,7 +100,7 @@ TEST_CASE("triangle pairs agree with an exact clipper at every power of two, the
     Random random{std::mt19937_64(6)};
     OrientationCounts counts;
     std::array<std::size_t, 2> answers{};
-    for (int power = -1074; power <= 1023; power += stride())
+    for (int power = -1074; power <= 1023; power += power_stride())
         for (int i = 0; i < 18 * repeats(); ++i) {
             // Whole numbers of at most 10, less where they would overflow: all products with powers of two are exact.
             std::array<int, 3> e{power, power, power};
@@ -146,7 +141,7 @@ TEST_CASE("triangle pairs agree with an exact clipper at every power of two, the
 TEST_CASE("triangle pairs that touch up to rounding agree with an exact clipper in every order, at every power of two")
 {
     Random random{std::mt19937_64(7)};
-    for (int power = -1074; power <= 1023; power += stride()) {
+    for (int power = -1074; power <= 1023; power += power_stride()) {
         const TrianglePoints a = scaled({random.point(), random.point(), random.point()}, power);
         TrianglePoints b = scaled(near_touching(random, scaled(a, -power)), power);
         for (Vec3& v : b) // twice as far as a coordinate may be
@@ -164,7 +159,7 @@ TEST_CASE("what floats decide without doubt is true at every power of two, alike
     const auto targets = kernel_targets();
     std::size_t hits = 0, misses = 0;
     constexpr int least = -150, most = 120; // beyond it a leaf is not known
-    for (int power = least; power <= most; power += stride())
+    for (int power = least; power <= most; power += power_stride())
         for (int i = 0; i < 60 * repeats(); ++i) {
             const std::size_t lanes = std::size_t{4} << random.below(3);
             const int other = i % 3 == 0   ? power

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <random>
 #include <sstream>
 
 #include "tests/collide/clipper.hpp"
+#include "tests/support.hpp"
 
 namespace cinch::test {
 
@@ -63,6 +65,11 @@ inline SmallTriangle collapse(SmallTriangle t, int how)
     }
     return t;
 }
+
+/// From one power of two to the next that is looked at: each at a share of 1 and more, every 16th at small ones.
+inline int power_stride() { return static_cast<int>(std::ceil(std::clamp(1 / test_share(), 1.0, 16.0))); }
+/// How often, from a share of 1 on.
+inline int repeats() { return std::max(1, static_cast<int>(test_share())); }
 
 inline constexpr std::array<std::array<std::size_t, 3>, 6> orders{
     {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};

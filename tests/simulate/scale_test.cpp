@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/simulate/bodies.hpp"
+#include "tests/support.hpp"
 #include "toolkit/simulate/contact_search.hpp"
 #include "toolkit/simulate/simulation.hpp"
 
@@ -184,9 +185,9 @@ TEST_CASE("scenes in units that are powers of two give the same bits, whatever a
         const Motion one = run(scene);
         REQUIRE(one.failure == "");
         const double big = 0x1p30, small = 0x1p-30;
-        for (const Units& u :
-             {Units{big, 1, 1}, Units{small, 1, 1}, Units{1, big, 1}, Units{1, small, 1}, Units{1, 1, big},
-              Units{1, 1, small}, Units{small, big, small}, Units{big, small, small}}) {
+        const Units units[] = {{small, big, small}, {big, small, small}, {big, 1, 1}, {small, 1, 1},
+                               {1, big, 1},         {1, small, 1},       {1, 1, big}, {1, 1, small}};
+        for (const Units& u : test::share_of(units)) {
             INFO(method << ": length " << u.length << ", time " << u.time << ", mass " << u.mass);
             const Motion other = run(in_units(scene, u));
             REQUIRE(other.failure == "");
@@ -201,9 +202,9 @@ TEST_CASE("scenes scaled by 1e-9 to 1e9 in length, time and mass give the same m
         const json scene = everything(method);
         const Motion one = run(scene);
         REQUIRE(one.failure == "");
-        for (const Units& u : {Units{1e9, 1, 1}, Units{1e-9, 1, 1}, Units{1, 1e9, 1}, Units{1, 1e-9, 1},
-                               Units{1, 1, 1e9}, Units{1, 1, 1e-9}, Units{1e-9, 1e-9, 1e-9}, Units{1e9, 1e9, 1e9},
-                               Units{1e-9, 1e9, 1e-9}, Units{1e3, 1e-5, 1e7}}) {
+        const Units units[] = {{1e-9, 1e9, 1e-9}, {1e3, 1e-5, 1e7}, {1e9, 1, 1},  {1e-9, 1, 1},       {1, 1e9, 1},
+                               {1, 1e-9, 1},      {1, 1, 1e9},      {1, 1, 1e-9}, {1e-9, 1e-9, 1e-9}, {1e9, 1e9, 1e9}};
+        for (const Units& u : test::share_of(units)) {
             INFO(method << ": length " << u.length << ", time " << u.time << ", mass " << u.mass);
             const Motion other = run(in_units(scene, u));
             REQUIRE(other.failure == "");

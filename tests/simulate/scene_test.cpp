@@ -130,9 +130,10 @@ TEST_CASE("what is wrong in a scene is named by its path")
             scene[pointer.parent_pointer()].erase(pointer.back());
         else
             scene[pointer] = c.value;
-        INFO(c.pointer << " = " << c.value.dump() << ": " << complaint(scene));
-        CHECK(complaint(scene).find(c.expected) != std::string::npos);
-        CHECK(complaint(scene).find('\n') == std::string::npos);
+        const std::string said = complaint(scene);
+        INFO(c.pointer << " = " << c.value.dump() << ": " << said);
+        CHECK(said.find(c.expected) != std::string::npos);
+        CHECK(said.find('\n') == std::string::npos);
     }
     auto text_complaint = [](const std::string& text) {
         try {

@@ -12,21 +12,6 @@ namespace cinch {
 using html::figure;
 using html::percent;
 
-CollideTimes collide_times(const Results& results, const std::string& scene, const char* backend)
-{
-    const auto found =
-        results.where({{"experiment", "collide"}, {"scene", scene}, {"backend", backend}, {"cold", false}});
-    if (found.empty())
-        return {};
-    const Record& r = *found.front();
-    auto number = [&](const char* field) { return Results::number(r, field); };
-    CollideTimes times{number("evaluate_ms"),   {},
-                       number("query_ms"),      number("total_ms"),
-                       number("mean_vertices"), number("vertices") * number("bodies")};
-    times.refit = times.evaluate + number("update_ms");
-    return times;
-}
-
 Traced avoided_evaluation(const CollideTimes& full, const CollideTimes& lazy)
 {
     if (!lazy.vertices.known())
@@ -36,8 +21,6 @@ Traced avoided_evaluation(const CollideTimes& full, const CollideTimes& lazy)
     return full.evaluate * unused;
 }
 
-std::string ring_scene(int number) { return fmt::format("santa-ring-{}", number); }
-
 std::string why_gain(const Results& results, const std::string& scene, double paper_full, double paper_total,
                      double paper_gain)
 {
@@ -45,7 +28,7 @@ std::string why_gain(const Results& results, const std::string& scene, double pa
                        eq12 = collide_times(results, scene, "eq12-aabb"),
                        clusters = collide_times(results, scene, "refit-16"),
                        own = collide_times(results, scene, "cinch");
-    const Traced gain = full.total / eq12.total;
+    const Traced gain = eq12.gain;
     std::string why =
         gain.value >= 1
             ? fmt::format("Eq. 12 on demand is {} times faster than a full update, in the paper {:g}.", figure(gain),
@@ -67,10 +50,10 @@ std::string why_gain(const Results& results, const std::string& scene, double pa
                                   : ", more than is gained: its bounds cost the rest.";
     }
     if (clusters.known())
-        why += fmt::format(" A full refit with 16-triangle leaves alone gains {}", figure(full.total / clusters.total));
+        why += fmt::format(" A full refit with 16-triangle leaves alone gains {}", figure(clusters.gain));
     if (own.known())
-        why += fmt::format("{} the default here, on the same leaves, {}", clusters.known() ? ";" : "",
-                           figure(full.total / own.total));
+        why +=
+            fmt::format("{} the default here, on the same leaves, {}", clusters.known() ? ";" : "", figure(own.gain));
     return why + (clusters.known() || own.known() ? "." : "");
 }
 

@@ -32,10 +32,9 @@ std::string ratio_row(const std::vector<std::string>& cells)
 /// faster at all where they are few.
 html::Judgement gain(const Results& results, int ring)
 {
-    const CollideTimes full = collide_times(results, ring_scene(ring), "refit-1"),
-                       eq12 = collide_times(results, ring_scene(ring), "eq12-aabb");
     const bool is_large = std::find(large.begin(), large.end(), ring) != large.end();
-    return html::at_least(fmt::format("gain-{}", ring), full.total / eq12.total, is_large ? 10 : 1);
+    return html::at_least(fmt::format("gain-{}", ring), collide_times(results, ring_scene(ring), "eq12-aabb").gain,
+                          is_large ? 10 : 1);
 }
 /// AABB/AABB is as fast as OBB/14-DOP.
 html::Judgement aabb_fastest(const Results& results, int ring)
@@ -54,9 +53,7 @@ html::Judgement hash_slower(const Results& results, int ring)
 }
 html::Judgement fish_gain(const Results& results)
 {
-    return html::at_least(
-        "gain-fishes",
-        collide_times(results, "fishes", "refit-1").total / collide_times(results, "fishes", "eq12-aabb").total, 6);
+    return html::at_least("gain-fishes", collide_times(results, "fishes", "eq12-aabb").gain, 6);
 }
 
 std::string table_2(const Results& results)
@@ -84,7 +81,7 @@ std::string table_3(const Results& results)
     constexpr std::array columns{"refit", "query", "total", "hash load", "hash query", "hash total"};
     std::vector<std::string> blocks;
     for (int first = 1; first <= 7; first += 2) {
-        const std::string place = fmt::format("{}, {}", first, first + 1);
+        const std::string place = row_of_table_3(first);
         std::vector<std::string> head{html::raw_cell("<strong>" + place + "</strong>, paper", "l")};
         for (const char* column : columns)
             head.push_back(html::paper_cell(paper_figure("Table 3", place, column)));
@@ -155,11 +152,9 @@ std::string table_4(const Results& results)
         const std::string place = std::to_string(ring), scene = ring_scene(ring);
         std::vector<std::string> head{html::raw_cell("<strong>" + place + "</strong>, paper", "l")},
             here{html::text_cell("here", "l")}, ratio{html::text_cell("paper / here", "l")};
-        const CollideTimes full = collide_times(results, scene, "refit-1"),
-                           aabb = collide_times(results, scene, "eq12-aabb"),
+        const CollideTimes aabb = collide_times(results, scene, "eq12-aabb"),
                            obb = collide_times(results, scene, "eq12-obb-14");
-        const std::array all{aabb.refit, aabb.query, aabb.total, full.total / aabb.total,
-                             obb.refit,  obb.query,  obb.total,  full.total / obb.total};
+        const std::array all{aabb.refit, aabb.query, aabb.total, aabb.gain, obb.refit, obb.query, obb.total, obb.gain};
         for (std::size_t i = 0; i < all.size(); ++i) {
             const PaperFigure& paper = paper_figure("Table 4", place, columns[i]);
             head.push_back(html::paper_cell(paper));
@@ -172,9 +167,7 @@ std::string table_4(const Results& results)
         else {
             rows.push_back(html::row(here));
             rows.push_back(ratio_row(ratio));
-            const double paper_full =
-                paper_figure("Table 3", fmt::format("{}, {}", (ring - 1) / 2 * 2 + 1, (ring - 1) / 2 * 2 + 2), "total")
-                    .value;
+            const double paper_full = paper_figure("Table 3", row_of_table_3(ring), "total").value;
             const bool aabb_wins = aabb.total.value <= obb.total.value;
             std::string why = why_gain(results, scene, paper_full, paper_figure("Table 4", place, "total").value,
                                        paper_figure("Table 4", place, "gain").value);
@@ -203,7 +196,7 @@ std::string fig_7(const Results& results)
     constexpr std::array columns{"refit", "query", "full refit", "full query", "gain"};
     const CollideTimes full = collide_times(results, "fishes", "refit-1"),
                        eq12 = collide_times(results, "fishes", "eq12-aabb");
-    const std::array all{eq12.refit, eq12.query, full.refit, full.query, full.total / eq12.total};
+    const std::array all{eq12.refit, eq12.query, full.refit, full.query, eq12.gain};
     if (!all[4].known())
         return "";
     std::vector<std::string> head{html::text_cell("paper", "l")}, here{html::text_cell("here", "l")},
@@ -278,20 +271,18 @@ std::vector<Claim> collide_claims(const Results& results)
             dops.push_back(times(more).total / times("eq12-aabb-14").total);
         query.push_back(eq12.query / full.query);
         if (ring == 1 || ring == 2 || ring == 5 || ring == 6) {
-            const CollideTimes more = collide_times(results, ring_scene(ring + 2), "refit-1"),
-                               more_eq12 = collide_times(results, ring_scene(ring + 2), "eq12-aabb");
-            growth.push_back((more.total / more_eq12.total) / (full.total / eq12.total));
+            const CollideTimes more_eq12 = collide_times(results, ring_scene(ring + 2), "eq12-aabb");
+            growth.push_back(more_eq12.gain / eq12.gain);
         }
     }
     for (const int ring : large) {
         const CollideTimes full = collide_times(results, ring_scene(ring), "refit-1"),
                            eq12 = collide_times(results, ring_scene(ring), "eq12-aabb");
-        totals.push_back(full.total / eq12.total);
+        totals.push_back(eq12.gain);
         refits.push_back(full.refit / eq12.refit);
-        clusters.push_back(full.total / collide_times(results, ring_scene(ring), "refit-16").total);
+        clusters.push_back(collide_times(results, ring_scene(ring), "refit-16").gain);
     }
-    const CollideTimes fishes = collide_times(results, "fishes", "refit-1");
-    const Traced fishes_gain = fishes.total / collide_times(results, "fishes", "eq12-aabb").total;
+    const Traced fishes_gain = collide_times(results, "fishes", "eq12-aabb").gain;
     auto span = [](const std::vector<Traced>& all) {
         const Traced low = least(all), high = greatest(all);
         return low.value < high.value ? fmt::format("{} to {}", figure(low), figure(high)) : figure(low);

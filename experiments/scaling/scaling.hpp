@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "cinch/refit.hpp"
-#include "experiments/report/record_output.hpp"
+#include "experiments/records/run_campaign.hpp"
 
 namespace cinch {
 
@@ -15,6 +15,7 @@ struct ScalingOptions {
     std::uint64_t seed = 0;
     std::string input;    ///< measured instead of the brain: a scene's first body, a mesh or a character
     bool partial = false; ///< of a character: what is modelled, see InputOptions
+    ShardOptions shards;  ///< by sizes
     OutputOptions output;
 };
 
@@ -22,5 +23,7 @@ struct ScalingOptions {
 /// simulation nodes, by every method, with the textbook's Eq. 12 and the optimal AABB in the same run. Returns the exit
 /// status.
 int scaling(const ScalingOptions& options);
+/// The same from rows that shards computed.
+int print_scaling(const Merged& all, const OutputOptions& options);
 
 } // namespace cinch
