@@ -208,14 +208,19 @@ void print_results(const Merged& all, const OutputOptions& options, const Proven
     fmt::print("\n{}\n", describe(from));
 }
 
+Provenance provenance_of_rows(const Campaign& campaign)
+{
+    Provenance from = provenance_of(campaign);
+    from.seed = campaign.plan.at("seed");
+    from.threads = 1;
+    return from;
+}
+
 } // namespace
 
 int print_scaling(const Merged& all, const OutputOptions& options)
 {
-    Provenance from = provenance_of(all.campaign);
-    from.seed = all.campaign.plan.at("seed");
-    from.threads = 1;
-    print_results(all, options, from, {});
+    print_results(all, options, provenance_of_rows(all.campaign), {});
     return 0;
 }
 
@@ -237,8 +242,8 @@ int scaling(const ScalingOptions& options)
         Completeness completeness = run.completeness();
         if (!completeness.complete)
             completeness.note = interrupted_after(run.done, run.wanted, "sizes");
-        print_results(run.all, options.output, options.shards.folder.empty() ? here : provenance_of(run.all.campaign),
-                      completeness);
+        print_results(run.all, options.output,
+                      options.shards.folder.empty() ? here : provenance_of_rows(run.all.campaign), completeness);
     });
 }
 
