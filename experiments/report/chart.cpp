@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/report/chart.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <numeric>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -86,14 +88,91 @@ std::string log_tics(const char* axis, const Chart& chart, std::vector<double> S
     return fmt::format("set {}tics ({})\n", axis, list);
 }
 
+// Where a name stands, as a share of the height from below, by its series.
+using LabelHeights = std::vector<double>;
+
+// Beside the right ends of lines, moved apart where these are near each other; none where there is but one line, where
+// there are points alone, and where they would not fit.
+LabelHeights label_heights(const Chart& chart, double low, double high)
+{
+    constexpr double line = 0.056; // of text, of the height
+    if (chart.series.size() < 2 || static_cast<double>(chart.series.size()) * line > 1)
+        return {};
+    auto scaled = [&](double y) { return chart.log_y ? std::log(y) : y; };
+    LabelHeights at;
+    for (const Series& series : chart.series) {
+        if (series.points_only)
+            return {};
+        double last = NAN, furthest = -INFINITY;
+        each_point(series, [&](std::size_t p) {
+            if (series.x[p] >= furthest) {
+                furthest = series.x[p];
+                last = series.y[p];
+            }
+        });
+        const double height = (scaled(last) - scaled(low)) / (scaled(high) - scaled(low));
+        at.push_back(std::isfinite(height) ? height : 0);
+    }
+    std::vector<std::size_t> order(at.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return at[a] < at[b]; });
+    double least = line / 2; // upwards where they are too near, then down again from the top
+    for (const std::size_t i : order) {
+        at[i] = std::max(at[i], least);
+        least = at[i] + line;
+    }
+    double most = 1 - line / 2;
+    for (auto i = order.rbegin(); i != order.rend(); ++i) {
+        at[*i] = std::min(at[*i], most);
+        most = at[*i] - line;
+    }
+    return at;
+}
+
+// From the least to the greatest value, bands included, and a little more; 0 and 0 where there are none.
+std::pair<double, double> y_range(const Chart& chart)
+{
+    double low = INFINITY, high = -INFINITY;
+    for (const Series& series : chart.series)
+        for (const std::vector<double>* values : {&series.y, &series.low, &series.high})
+            for (const double y : *values)
+                if (std::isfinite(y) && (!chart.log_y || y > 0)) {
+                    low = std::min(low, y);
+                    high = std::max(high, y);
+                }
+    if (!(low <= high))
+        return {0, 0};
+    if (chart.log_y) {
+        const double more = std::max(std::pow(high / low, 0.05), 1.02);
+        return {low / more, high * more};
+    }
+    const double more = std::max(0.05 * (high - low), 1e-3 * std::max(std::abs(low), std::abs(high)));
+    return more > 0 ? std::pair(low - more, high + more) : std::pair(-1.0, 1.0);
+}
+
 std::string script_of(const Chart& chart)
 {
+    const auto [low, high] = y_range(chart);
+    const LabelHeights heights = low < high ? label_heights(chart, low, high) : LabelHeights{};
     std::string script = fmt::format("set title {} noenhanced\nset xlabel {} noenhanced\nset ylabel {} "
-                                     "noenhanced\n{}{}set autoscale fix\nset offsets graph 0.02, graph 0.02, graph "
-                                     "0.05, graph 0.05\nplot ",
+                                     "noenhanced\n{}{}set autoscale fix\nset offsets graph 0.02, graph 0.02, 0, 0\n",
                                      quoted(base_name(chart.title)), quoted(chart.x_label), quoted(chart.y_label),
                                      chart.log_x ? "set logscale x\n" + log_tics("x", chart, &Series::x) : "",
                                      chart.log_y ? "set logscale y\n" + log_tics("y", chart, &Series::y) : "");
+    if (low < high)
+        script += fmt::format("set yrange [{:.9g}:{:.9g}]\n", low, high);
+    std::size_t longest = 0;
+    for (std::size_t i = 0; i < heights.size(); ++i) {
+        const std::string name = base_name(chart.series[i].name);
+        longest = std::max(longest, name.size());
+        script += fmt::format("set label {} {} at graph 1.025, graph {:.4f} left offset 1,0 noenhanced tc rgb '{}' "
+                              "point pt {} ps 0.6 lc rgb '{}'\n",
+                              i + 2, quoted(name), heights[i], colours[i % colours.size()], marks[i % marks.size()],
+                              colours[i % colours.size()]);
+    }
+    if (!heights.empty())
+        script += fmt::format("unset key\nset rmargin {}\n", longest + 4);
+    script += "plot ";
     std::string points;
     for (std::size_t i = 0; i < chart.series.size(); ++i) {
         const Series& series = chart.series[i];

@@ -86,6 +86,10 @@ summary { cursor: pointer; }
   figure.chart, tbody, .claims li { break-inside: avoid; }
   figure.chart svg { min-width: 0; max-width: 15cm; }
   .table { overflow: visible; }
+  table { min-width: 0; font-size: 8pt; }
+  th, td, td.l { padding: .15rem .4rem; white-space: normal; overflow-wrap: anywhere; min-width: 0; }
+  #provenance table { font-size: 7pt; }
+  #provenance td:nth-child(2) { min-width: 0; }
   a.f { text-decoration: none; }
 }
 )css";
