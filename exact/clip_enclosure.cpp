@@ -306,14 +306,27 @@ struct ClipEnclosure::Parts {
     std::vector<std::vector<Arc>> arcs; // between the keys of each curve, where they are that
     std::vector<double> keys;
     std::vector<WithSlope<Rows>> still; // bones as the file has them
-    std::vector<double> weights;        // of morph targets, where no curve moves them
+    std::vector<Enclosure> weights;     // of morph targets, where no curve moves them
     std::vector<WeightCurve> weight_curves;
+    bool any_weights;
 };
 
-ClipEnclosure::ClipEnclosure(const Character& character, const Character::Animation& animation)
-    : parts_(new Parts{
-          character.bones, character.joints, animation.curves, {}, {}, {}, character.target_weights, animation.morphs})
+ClipEnclosure::ClipEnclosure(const Character& character, const Character::Animation& animation,
+                             std::optional<Enclosure> any_weights)
+    : parts_(new Parts{character.bones,
+                       character.joints,
+                       animation.curves,
+                       {},
+                       {},
+                       {},
+                       {},
+                       animation.morphs,
+                       any_weights.has_value()})
 {
+    for (const double weight : character.target_weights)
+        parts_->weights.push_back(any_weights.value_or(Enclosure{weight, weight}));
+    if (any_weights)
+        parts_->weight_curves.clear();
     const DirectedRounding rounding;
     for (const Curve& curve : parts_->curves) {
         std::vector<Arc>& arcs = parts_->arcs.emplace_back();
@@ -326,12 +339,14 @@ ClipEnclosure::ClipEnclosure(const Character& character, const Character::Animat
     std::set<double> keys;
     for (const Curve& curve : animation.curves)
         keys.insert(curve.time_s.begin(), curve.time_s.end());
-    for (const WeightCurve& curve : animation.morphs)
+    for (const WeightCurve& curve : parts_->weight_curves)
         keys.insert(curve.time_s.begin(), curve.time_s.end());
     parts_->keys.assign(keys.begin(), keys.end());
 }
 
 ClipEnclosure::~ClipEnclosure() = default;
+
+bool ClipEnclosure::has_any_weights() const { return parts_->any_weights; }
 
 const std::vector<double>& ClipEnclosure::keys() const { return parts_->keys; }
 
@@ -339,9 +354,7 @@ void ClipEnclosure::weights_at(double a_s, double b_s, double piece_a_s, double 
                                std::vector<Enclosure>& weights, std::vector<Enclosure>& slopes) const
 {
     const DirectedRounding rounding;
-    weights.clear();
-    for (const double weight : parts_->weights)
-        weights.push_back({weight, weight});
+    weights = parts_->weights;
     slopes.assign(weights.size(), Enclosure{});
     for (const WeightCurve& curve : parts_->weight_curves)
         for (std::size_t first = 0; first < curve.count; first += 4) {

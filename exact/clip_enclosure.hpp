@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "cinch/io.hpp"
 #include "exact/motion_enclosure.hpp"
@@ -14,7 +15,9 @@ namespace cinch::exact {
 /// quaternions, and what is said of an interval of time comes from interval arithmetic alone.
 class ClipEnclosure final : public MotionEnclosure {
 public:
-    ClipEnclosure(const Character& character, const Character::Animation& animation);
+    /// `any_weights`: of all morph targets at all times, instead of what file and clip say.
+    ClipEnclosure(const Character& character, const Character::Animation& animation,
+                  std::optional<Enclosure> any_weights = {});
     ~ClipEnclosure() override;
 
     /// Unbounded where a quaternion may be 0.
@@ -22,6 +25,7 @@ public:
             std::vector<MapEnclosure>& slopes) const override;
     void weights_at(double a_s, double b_s, double piece_a_s, double piece_b_s, std::vector<Enclosure>& weights,
                     std::vector<Enclosure>& slopes) const override;
+    bool has_any_weights() const override;
     /// Of joints and weights.
     const std::vector<double>& keys() const override;
 

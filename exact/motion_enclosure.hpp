@@ -29,6 +29,8 @@ public:
     /// The same of the weights of morph targets, as many as there are.
     virtual void weights_at(double a_s, double b_s, double piece_a_s, double piece_b_s, std::vector<Enclosure>& weights,
                             std::vector<Enclosure>& slopes) const = 0;
+    /// Whether weights may be anything in those enclosures, at each t whatever they were before; slopes are 0 then.
+    virtual bool has_any_weights() const { return false; }
     /// Times of keys, ascending, each once.
     virtual const std::vector<double>& keys() const = 0;
 };

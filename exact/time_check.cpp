@@ -58,6 +58,41 @@ Interval along(const Axis& axis, bool against, const Place& x)
     return sum;
 }
 
+// Σ w_j γᵀA_j and Σ w_j γᵀt_j.
+struct Along {
+    Place g = origin;
+    Interval shift = Interval(0);
+
+    Along(const Weights::Row& row, const std::vector<MapEnclosure>& maps, const Axis& axis, bool against)
+    {
+        for (std::size_t i = 0; i < row.node.size(); ++i)
+            for (std::size_t r = 0; r < 3; ++r) {
+                if (axis[r] == 0)
+                    continue;
+                const Interval w = (axis[r] > 0) != against ? Interval(row.weight[i]) : -Interval(row.weight[i]);
+                const MapEnclosure& map = maps[row.node[i]];
+                for (std::size_t c = 0; c < 3; ++c)
+                    g[c] += w * interval_of(map.m[r][c]);
+                shift += w * interval_of(map.m[r][3]);
+            }
+    }
+    Interval of(const Vec3& y) const { return g[0] * Interval(y[0]) + g[1] * Interval(y[1]) + g[2] * Interval(y[2]); }
+};
+
+// Σ_i a_i g·d_i with every weight anywhere in its interval: all of it, or its greatest value.
+Interval displaced_along(const Along& along, const std::vector<std::pair<std::uint32_t, Vec3>>& by,
+                         const std::vector<Enclosure>& weights, bool greatest)
+{
+    Interval sum(0);
+    for (const auto& [target, d] : by) {
+        const Interval one = along.of(d), low = Interval(weights[target].low) * one,
+                       high = Interval(weights[target].high) * one;
+        sum += Interval(greatest ? std::max(low.inf(), high.inf()) : std::min(low.inf(), high.inf()),
+                        std::max(low.sup(), high.sup()));
+    }
+    return sum;
+}
+
 // All that places are made from, at an instant.
 struct Pose {
     std::vector<MapEnclosure> maps;
@@ -191,25 +226,39 @@ TimeVerdict TimeChecker::operator()(double a_s, double b_s, std::span<const doub
                     add_place(row, y, slopes, true, slope);
                     add_place(row, rate, maps, false, slope);
                 }
+                const bool any = clip_.has_any_weights() && !displaced_.empty() && !displaced_[v].empty();
                 std::optional<Place> first, last; // at the ends
                 Place swept;
                 for (std::size_t r = 0; r < 3; ++r)
                     swept[r] = here[r] + slope[r] * step;
                 for (std::size_t d = 0; d < k; ++d) {
                     const double limit = least[i * k + d];
+                    if (limit == infinity)
+                        continue;
                     auto reach = [&](const Place& x) { return along(axes[d / 2], d % 2 == 1, x); };
-                    if (limit == infinity || reach(swept).sup() <= limit)
+                    auto greatest = [&](const Pose& pose) { // over all weights
+                        const Along g(row, pose.maps, axes[d / 2], d % 2 == 1);
+                        return g.of(rest) + g.shift + displaced_along(g, displaced_[v], pose.weights, true);
+                    };
+                    const Interval at_centre = any ? greatest(*at_middle) : reach(here);
+                    Interval rise = reach(slope);
+                    if (any) {
+                        const Along g(row, slopes, axes[d / 2], d % 2 == 1);
+                        rise = g.of(rest) + g.shift + displaced_along(g, displaced_[v], weights, false);
+                    }
+                    if ((any ? at_centre + rise * step : reach(swept)).sup() <= limit)
                         continue;
                     if (!first) {
                         first = place(*piece.at_a);
                         last = place(*piece.at_b);
                     }
                     // Where the slope has one sign the greatest value is at an end.
-                    const Interval rise = reach(slope), at_first = reach(*first), at_last = reach(*last);
+                    const Interval at_first = any ? greatest(*piece.at_a) : reach(*first),
+                                   at_last = any ? greatest(*piece.at_b) : reach(*last);
                     if (rise.inf() >= 0 ? at_last.sup() <= limit : rise.sup() <= 0 && at_first.sup() <= limit)
                         continue;
                     open[n] = true;
-                    const double at_least = std::max({reach(here).inf(), at_first.inf(), at_last.inf()});
+                    const double at_least = std::max({at_centre.inf(), at_first.inf(), at_last.inf()});
                     if (!(at_least > limit))
                         continue;
                     const double when = at_least == at_first.inf()  ? piece.a

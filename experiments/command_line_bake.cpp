@@ -48,6 +48,10 @@ void add_bake(CLI::App& app, Run& run)
     command.add_flag(
         "--nlerp", o.engine.nlerp,
         wrapped("rotations between keys may be normalised sums of quaternions, as many engines have them"));
+    option("--morphs", o.input.morphs,
+           "weights that morph targets may have at any time, whatever the clips say: any, from 0 to 1, or other limits "
+           "[as the clips say]")
+        ->option_text("any|LEAST..GREATEST");
     command.add_flag("--prove", o.prove,
                      wrapped("prove every bound at every BV, by exact intervals over time on the transforms"));
     command.add_flag("--report", o.report,
@@ -84,6 +88,7 @@ Examples:
   cinch bake robot.glb --level -1 --prove    and an exact proof of each
   cinch bake robot.glb --certificate robot.jsonl.gz
   cinch bake robot.glb --engine float32 --joint-error 1e-5 --nlerp
+  cinch bake face.vrm --morphs any           for weights that a program sets
   cinch bake robot.glb --report              how tight, and what frames miss
   cinch bake robot.glb --prove --out proof   clip by clip, and on after a Ctrl-C
 

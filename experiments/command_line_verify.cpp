@@ -38,6 +38,10 @@ void add_verify(CLI::App& app, Run& run)
            "what is proven: frames (at each of them), or all (at all real times of every clip, or of --clip) [frames]")
         ->transform(one_of<bool>({{"frames", false}, {"all", true}}))
         ->option_text("WHICH");
+    option("--morphs", o.input.morphs,
+           "with --times all: weights that morph targets may have at any time: any, from 0 to 1, or other limits [as "
+           "the clips say]")
+        ->option_text("any|LEAST..GREATEST");
     option("--leaf", o.leaf, "most triangles per leaf [1; 16 with --update or --times all]")
         ->check(CLI::Range(1, 1000000))
         ->option_text("N");

@@ -21,6 +21,8 @@ struct InputOptions {
     std::string motion;
     std::string weights, transforms;
     std::string clip;
+    std::string morphs; ///< of a character over time: "any" or "LEAST..GREATEST", weights that morph targets may have
+                        ///< at any time, instead of the clip's
     double fps = 0;
     std::size_t frames = 0;
     bool last_frames = false; ///< of a scene: the last `frames` one after the other, instead of evenly spread

@@ -279,6 +279,8 @@ int verify_in_cells(const std::shared_ptr<const Inputs>& inputs, const VerifyOpt
 int verify(const VerifyOptions& given)
 {
     VerifyOptions options = given;
+    if (!options.input.morphs.empty())
+        throw InputError("--morphs is of all times; with --times all");
     if (options.leaf == 0)
         options.leaf = options.update == VerifiedUpdate::refit ? 1 : 16;
     const auto start = std::chrono::steady_clock::now();

@@ -191,6 +191,7 @@ std::uint64_t checksum_of(const TimedBody& body, std::uint64_t sum)
     for (const MorphTarget& target : body.targets()) {
         take(target.vertex);
         take(target.displacement);
+        take(target.half);
     }
     return sum;
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "experiments/measure/box_radius.hpp"
 #include "experiments/report/interrupt.hpp"
@@ -42,6 +43,9 @@ public:
     Truth(const DeformableSurface& surface, const Bvh& bvh, std::span<const MorphTarget> targets, int kdop)
         : surface_(surface), bvh_(bvh), targets_(targets), axes_(axes_of(kdop)), place_(surface.mesh.vertices.size())
     {
+        for (const MorphTarget& target : targets)
+            for (std::size_t n = 0; n < target.half.size(); ++n)
+                half_[target.vertex[n]] = target.half[n]; // of with_any_weights, which makes one of all targets
     }
 
     void operator()(const TimedMotion& motion, double t, std::vector<double>& supports)
@@ -49,7 +53,8 @@ public:
         std::vector<Vec3> rest = surface_.mesh.vertices;
         if (motion.weights)
             displace(targets_, motion.weights(t), rest);
-        evaluate(rest, surface_.weights, motion.at(t), place_);
+        const std::vector<AffineMap> maps = motion.at(t);
+        evaluate(rest, surface_.weights, maps, place_);
         const std::size_t k = 2 * axes_.size();
         std::fill(supports.begin(), supports.end(), -std::numeric_limits<double>::infinity());
         for (std::size_t i = bvh_.bvs.size(); i-- > 0;) {
@@ -65,17 +70,36 @@ public:
                     for (std::size_t a = 0; a < axes_.size(); ++a) {
                         const auto& g = axes_[a];
                         const Vec3& x = place_[v];
-                        const double along = g[0] * x[0] + g[1] * x[1] + g[2] * x[2];
-                        out[2 * a] = std::max(out[2 * a], along);
-                        out[2 * a + 1] = std::max(out[2 * a + 1], -along);
+                        const double along = g[0] * x[0] + g[1] * x[1] + g[2] * x[2], more = around(v, g, maps);
+                        out[2 * a] = std::max(out[2 * a], along + more);
+                        out[2 * a + 1] = std::max(out[2 * a + 1], more - along);
                     }
         }
     }
 
 private:
+    // How far a vertex's displacement, which may be anywhere in a box, takes it along an axis: |Σ w_j A_jᵀγ|·half.
+    double around(std::uint32_t v, const Axis& g, std::span<const AffineMap> maps) const
+    {
+        const auto half = half_.find(v);
+        if (half == half_.end())
+            return 0;
+        double sum = 0;
+        const Weights::Row row = surface_.weights.of(v);
+        for (int c = 0; c < 3; ++c) {
+            double along = 0;
+            for (std::size_t i = 0; i < row.node.size(); ++i)
+                for (std::size_t r = 0; r < 3; ++r)
+                    along += row.weight[i] * g[r] * maps[row.node[i]].m[r][c];
+            sum += std::abs(along) * half->second[c];
+        }
+        return sum;
+    }
+
     const DeformableSurface& surface_;
     const Bvh& bvh_;
     std::span<const MorphTarget> targets_;
+    std::map<std::uint32_t, Vec3> half_;
     std::span<const Axis> axes_;
     std::vector<Vec3> place_;
 };

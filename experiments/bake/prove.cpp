@@ -13,11 +13,17 @@ exact::TimeVerdict prove(const TimedBody& body, const TimedClip& clip, const Bvh
                          std::span<const BakedInterval> intervals)
 {
     std::unique_ptr<exact::MotionEnclosure> enclosure;
-    if (clip.animation)
+    std::span<const MorphTarget> targets = body.targets();
+    if (body.any_weights) {
+        targets = body.any_weights->character->targets;
+        enclosure = std::make_unique<exact::ClipEnclosure>(
+            *body.any_weights->character, *clip.animation,
+            exact::Enclosure{body.any_weights->least, body.any_weights->greatest});
+    } else if (clip.animation)
         enclosure = std::make_unique<exact::ClipEnclosure>(*body.character, *clip.animation);
     else
         enclosure = std::make_unique<exact::LinearEnclosure>(body.input.clip);
-    const exact::TimeChecker check(body.input.surface, bvh, *enclosure, body.targets(), kdop, throw_if_interrupted);
+    const exact::TimeChecker check(body.input.surface, bvh, *enclosure, targets, kdop, throw_if_interrupted);
     exact::TimeVerdict out;
     for (const BakedInterval& interval : intervals)
         out.add(check(interval.first_s, interval.last_s, interval.supports));
@@ -32,6 +38,8 @@ TimeProofFile::TimeProofFile(const std::string& name, const TimedBody& body, con
                   file_.line(text);
               })
 {
+    if (body.any_weights)
+        throw InputError("--certificate is of the weights that clips give morph targets; not with --morphs");
 }
 
 void TimeProofFile::add(const TimedClip& clip, std::span<const BakedInterval> intervals)

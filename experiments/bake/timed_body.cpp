@@ -2,6 +2,8 @@
 #include "experiments/bake/timed_body.hpp"
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -12,11 +14,49 @@
 
 namespace cinch {
 
+namespace {
+
+// "any", or "LEAST..GREATEST".
+std::pair<double, double> range_of_weights(const std::string& text)
+{
+    if (text == "any")
+        return {0, 1};
+    const std::size_t dots = text.find("..");
+    double ends[2] = {0, 0};
+    bool good = dots != std::string::npos;
+    for (int i = 0; good && i < 2; ++i) {
+        const std::string_view part =
+            i == 0 ? std::string_view(text).substr(0, dots) : std::string_view(text).substr(dots + 2);
+        const auto read = std::from_chars(part.data(), part.data() + part.size(), ends[i]);
+        good = read.ec == std::errc() && read.ptr == part.data() + part.size() && std::isfinite(ends[i]);
+    }
+    if (!good || ends[0] > ends[1])
+        throw InputError(fmt::format("--morphs: expected any or LEAST..GREATEST, found '{}'", text));
+    return {ends[0], ends[1]};
+}
+
+// From here on the body's morph targets have any weights.
+void free_weights(TimedBody& body, Character& character, const InputOptions& options)
+{
+    const auto [least, greatest] = range_of_weights(options.morphs);
+    if (character.targets.empty())
+        throw InputError::in_file(options.input, "has no morph targets for --morphs");
+    body.any_weights = AnyWeights{std::make_shared<const Character>(character), least, greatest};
+    character = with_any_weights(std::move(character), least, greatest);
+    body.input.report.push_back(fmt::format("weights of morph targets: any from {:g} to {:g}, whatever clips say, at "
+                                            "any time",
+                                            least, greatest));
+}
+
+} // namespace
+
 std::vector<TimedBody> load_timed(const InputOptions& options, const Engine& engine)
 {
     std::vector<TimedBody> bodies;
     InputOptions what = options;
     if (!is_character_file(what.input)) {
+        if (!what.morphs.empty())
+            throw InputError("--morphs is of characters (.glb, .gltf, .vrm)");
         if (!engine.exact())
             throw InputError("--engine, --nlerp and --joint-error are of characters (.glb, .gltf, .vrm)");
         if (is_scene(what.input)) { // all of its frames, of which a choice is the usual
@@ -38,6 +78,8 @@ std::vector<TimedBody> load_timed(const InputOptions& options, const Engine& eng
     Character& character = *loaded;
     body.character = loaded;
     body.input = load_character_surface(what, character);
+    if (!what.morphs.empty())
+        free_weights(body, character, what);
     std::vector<const Character::Animation*> wanted;
     for (const Character::Animation& animation : character.animations)
         if (what.clip.empty() || animation.name == what.clip)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "cinch/io.hpp"
 #include "experiments/bake/bake.hpp"
@@ -16,10 +17,17 @@ struct TimedClip {
     const Character::Animation* animation = nullptr; ///< none for simulated and text clips
 };
 
+/// Where the weights of morph targets are not those of the clips: the file as it was read, and their limits.
+struct AnyWeights {
+    std::shared_ptr<const Character> character;
+    double least = 0, greatest = 1;
+};
+
 /// A surface with clips as functions of real time.
 struct TimedBody {
     Input input;
     std::shared_ptr<const Character> character; ///< none for others
+    std::optional<AnyWeights> any_weights;      ///< `character` is with_any_weights of its own then
     std::vector<TimedClip> clips;
 
     std::span<const MorphTarget> targets() const

@@ -100,9 +100,13 @@ public:
         for (std::uint32_t i = 0; i < character.targets.size(); ++i) {
             std::map<std::uint32_t, double> most;
             const MorphTarget& target = character.targets[i];
-            for (std::size_t n = 0; n < target.vertex.size(); ++n)
+            for (std::size_t n = 0; n < target.vertex.size(); ++n) {
+                Vec3 far = target.displacement[n].cwiseAbs();
+                if (!target.half.empty()) // twice: what opposite displacements are rounded against
+                    far += 2 * target.half[n];
                 for (const std::uint32_t j : surface.weights.of(target.vertex[n]).node)
-                    most[j] = std::max(most[j], target.displacement[n].norm() * wider);
+                    most[j] = std::max(most[j], far.norm() * wider);
+            }
             for (const auto& [j, size] : most)
                 farthest_[j].push_back({i, size});
         }

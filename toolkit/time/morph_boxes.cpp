@@ -15,6 +15,24 @@ struct Range {
     std::size_t displaced = 0; // vertices
 };
 
+// The box of a vertex's displacement, rounded outward.
+Vec3 highest(const MorphTarget& target, std::size_t n)
+{
+    Vec3 out = target.displacement[n];
+    if (!target.half.empty())
+        for (int c = 0; c < 3; ++c)
+            out[c] = succ(out[c] + target.half[n][c]);
+    return out;
+}
+Vec3 lowest(const MorphTarget& target, std::size_t n)
+{
+    Vec3 out = target.displacement[n];
+    if (!target.half.empty())
+        for (int c = 0; c < 3; ++c)
+            out[c] = -succ(target.half[n][c] - out[c]);
+    return out;
+}
+
 } // namespace
 
 MorphBoxes::MorphBoxes(const Bvh& bvh, const DeformableSurface& surface, std::span<const MorphTarget> targets)
@@ -22,12 +40,12 @@ MorphBoxes::MorphBoxes(const Bvh& bvh, const DeformableSurface& surface, std::sp
 {
     struct Displacement {
         std::uint32_t target;
-        Vec3 by;
+        Vec3 low, high;
     };
     std::vector<std::vector<Displacement>> of(surface.mesh.vertices.size());
     for (std::uint32_t i = 0; i < targets.size(); ++i)
         for (std::size_t n = 0; n < targets[i].vertex.size(); ++n)
-            of[targets[i].vertex[n]].push_back({i, targets[i].displacement[n]});
+            of[targets[i].vertex[n]].push_back({i, lowest(targets[i], n), highest(targets[i], n)});
     std::vector<Range> range(targets.size());
     std::vector<std::uint32_t> met;
     for (const Bv& bv : bvh.bvs) {
@@ -38,8 +56,8 @@ MorphBoxes::MorphBoxes(const Bvh& bvh, const DeformableSurface& surface, std::sp
                 Range& r = range[d.target];
                 if (r.displaced++ == 0)
                     met.push_back(d.target);
-                r.low = r.low.cwiseMin(d.by);
-                r.high = r.high.cwiseMax(d.by);
+                r.low = r.low.cwiseMin(d.low);
+                r.high = r.high.cwiseMax(d.high);
             }
         std::sort(met.begin(), met.end());
         for (const std::uint32_t i : met) {

@@ -124,6 +124,7 @@ struct DeformableSurface {
 struct MorphTarget {
     std::vector<std::uint32_t> vertex; ///< ascending; all others stay
     std::vector<Vec3> displacement;    ///< parallel to `vertex`; finite
+    std::vector<Vec3> half; ///< parallel too: anywhere within so much of it along each coordinate; empty: exactly there
 };
 
 /// Bad input. what() is one line: file, place and reason, ready to print.

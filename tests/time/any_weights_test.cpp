@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Morph targets whose weights a program sets: any of a range, at any time.
+#include <random>
+
+#include <catch2/catch.hpp>
+
+#include "cinch/deform.hpp"
+#include "cinch/io.hpp"
+#include "exact/clip_enclosure.hpp"
+#include "exact/time_check.hpp"
+#include "experiments/fuzz/time_case.hpp"
+#include "tests/support.hpp"
+#include "toolkit/time/bound_over.hpp"
+#include "toolkit/time/character_motion.hpp"
+
+using namespace cinch;
+
+namespace {
+
+using Random = std::mt19937_64;
+
+double between(Random& random, double low, double high)
+{
+    return std::uniform_real_distribution<double>(low, high)(random);
+}
+
+std::vector<double> bounds_of(const TimeCase& drawn, const Character& character, const RefitOptions& options,
+                              double tolerance)
+{
+    const TimedMotion motion = character_motion(character, character.rest, drawn.surface);
+    IntervalRefitter refit(drawn.bvh, drawn.surface, options, character.targets);
+    std::vector<double> supports(drawn.bvh.bvs.size() * static_cast<std::size_t>(options.kdop));
+    bound_over(refit, motion, motion.first_s(), motion.last_s(), tolerance, supports);
+    return supports;
+}
+
+} // namespace
+
+TEST_CASE("bounds for any weights of morph targets hold for all of them at all times, and smaller boxes are found out")
+{
+    Random random(19);
+    std::size_t cases = 0, undecided = 0, found = 0, finite = 0;
+    for (std::size_t i = 0; cases < test::share_of(60); ++i) {
+        const TimeCase drawn = draw_time_case(random());
+        if (drawn.character.targets.empty())
+            continue;
+        CAPTURE(i);
+        const double least = i % 3 == 0 ? -0.5 : i % 3 == 1 ? 0 : 0.25, greatest = i % 3 == 2 ? 0.25 : 1;
+        const Character any = with_any_weights(drawn.character, least, greatest);
+        const RefitOptions options{.kdop = kdops[i % kdops.size()],
+                                   .precision = i % 2 ? Precision::float64 : Precision::float32};
+        const double tolerance = i % 2 ? 1e6 : 0.01;
+        std::optional<exact::ClipEnclosure> clip;
+        try {
+            clip.emplace(drawn.character, drawn.character.rest, exact::Enclosure{least, greatest});
+        } catch (const InputError&) { // half a turn to the bit
+            continue;
+        }
+        ++cases;
+        const exact::TimeChecker check(drawn.surface, drawn.bvh, *clip, drawn.character.targets, options.kdop, [] {});
+        const double first_s = any.rest.first_s, last_s = any.rest.last_s;
+        const std::vector<double> supports = bounds_of(drawn, any, options, tolerance);
+        const exact::TimeVerdict verdict = check(first_s, last_s, supports);
+        CHECK(verdict.violated == 0);
+        undecided += verdict.undecided;
+        finite += static_cast<std::size_t>(
+            std::count_if(supports.begin(), supports.end(), [](double s) { return std::isfinite(s); }));
+
+        // Vertices as they are computed, of weights at the ends of the range and between.
+        const auto axes = axes_of(options.kdop);
+        const TimedMotion motion = character_motion(any, any.rest, drawn.surface);
+        for (int sample = 0; sample < 40; ++sample) {
+            std::vector<Vec3> rest = drawn.surface.mesh.vertices, place(rest.size());
+            for (const MorphTarget& target : drawn.character.targets) {
+                const double a = sample % 2 ? between(random, least, greatest) : random() & 1 ? least : greatest;
+                for (std::size_t n = 0; n < target.vertex.size(); ++n)
+                    rest[target.vertex[n]] += a * target.displacement[n];
+            }
+            evaluate(rest, drawn.surface.weights, motion.at(between(random, first_s, last_s)), place);
+            for (std::size_t bv = 0; bv < drawn.bvh.bvs.size(); ++bv)
+                for (const std::uint32_t v : vertices_of(drawn.surface, drawn.bvh, drawn.bvh.bvs[bv]))
+                    for (std::size_t d = 0; d < static_cast<std::size_t>(options.kdop); ++d) {
+                        double along = 0;
+                        for (std::size_t c = 0; c < 3; ++c)
+                            along += (d % 2 ? -1 : 1) * axes[d / 2][c] * place[v][static_cast<int>(c)];
+                        const double support = supports[bv * static_cast<std::size_t>(options.kdop) + d];
+                        REQUIRE(along <= support + (d < 6 ? 0 : 1e-12 * std::abs(support)));
+                    }
+        }
+
+        Character less = any;
+        for (Vec3& half : less.targets.front().half)
+            half *= 0.5;
+        const exact::TimeVerdict damaged = check(first_s, last_s, bounds_of(drawn, less, options, 1e-3));
+        found += least < greatest && damaged.violated > 0;
+    }
+    CHECK(undecided == 0);
+    CHECK(finite > cases);
+    CHECK(2 * found > cases / 2); // a third of the ranges is a point
+}
+
+TEST_CASE("one box stands for all weights of a character, and clips set none")
+{
+    Character character;
+    character.targets = {{{0, 2}, {{1, -2, 0}, {0, 0, 1}}, {}}, {{0}, {{3, 1, 0}}, {}}, {}};
+    character.target_weights = {0.5, 0, 0};
+    character.animations.resize(1);
+    character.animations[0].morphs = {{0, 2, Curve::Interpolation::linear, {0, 1}, {0, 0, 1, 1}}};
+    const Character any = with_any_weights(character);
+    REQUIRE(any.targets.size() == 3);
+    CHECK(any.target_weights == std::vector<double>{1, 0, 0});
+    CHECK(any.animations[0].morphs.empty());
+    const MorphTarget& box = any.targets[0];
+    CHECK(box.vertex == std::vector<std::uint32_t>{0, 2});
+    CHECK(box.displacement[0] == Vec3(2, -0.5, 0)); // (0, -2, 0) to (4, 1, 0)
+    CHECK((box.half[0] - Vec3(2, 1.5, 0)).norm() < 1e-14);
+    CHECK((box.half[0] - Vec3(2, 1.5, 0)).minCoeff() > 0);
+    CHECK(any.targets[1].vertex.empty());
+    CHECK_THROWS_AS(with_any_weights(character, 1, 0), std::invalid_argument);
+    CHECK_THROWS_AS(with_any_weights(character, 0, HUGE_VAL), std::invalid_argument);
+}
