@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """bake_test.py CINCH [SHARED]: the boxes of `cinch bake` against a reader and sampler of glTF of its own, written from
 the specification: dense samples of every clip must lie inside, and reach nearly as far."""
-import ast, json, math, os, re, struct, subprocess, sys, tempfile, zipfile
+import ast, json, math, os, random, re, struct, subprocess, sys, tempfile, zipfile
 
 from made_characters import face, wave
 from sampled_character import Character
@@ -9,9 +9,9 @@ from sampled_character import Character
 program, shared = sys.argv[1], sys.argv[2] if len(sys.argv) > 2 else ""
 
 
-def check(name, samples):
+def check(name, samples, *options, amount_of=None):
     character = Character(name)
-    made = subprocess.run([program, "bake", name, "--json"], capture_output=True, text=True)
+    made = subprocess.run([program, "bake", name, "--json", *options], capture_output=True, text=True)
     assert made.returncode == 0, made.stderr
     boxes = [json.loads(line) for line in made.stdout.splitlines()]
     worst, looseness = 0.0, 0.0
@@ -25,7 +25,7 @@ def check(name, samples):
         times = [a + (b - a) * i / samples for a, b in zip(keys, keys[1:]) for i in range(samples)] + [keys[-1]]
         truth = [[math.inf] * 3, [-math.inf] * 3]
         for t in times:
-            for v in character.vertices(channels, t):
+            for v in character.vertices(channels, t, amount_of):
                 for box in mine:
                     if box["t0"] <= t <= box["t1"]:
                         size = max(h - l for l, h in zip(box["min"], box["max"]))
@@ -44,7 +44,14 @@ with tempfile.TemporaryDirectory() as folder:
     for made, kinds in ((face(folder), ("no-remainder", "half-bump", "first-half", "still-morphs")),
                         (wave(folder), ("no-remainder", "half-bump", "first-half"))):
         check(made, 100)
+        if "still-morphs" in kinds:
+            chance = random.Random(3)
+            check(made, 100, "--morphs", "any", amount_of=lambda: chance.choice((0, 1, chance.random())))
+            check(made, 100, "--morphs", "-0.5..1.5", amount_of=lambda: chance.choice((-0.5, 1.5)))
         prove = ["bake", made, "--whole", "--level", "-1", "--leaf", "2", "--prove"]
+        if "still-morphs" in kinds:
+            any_weights = subprocess.run([program, *prove, "--morphs", "any"], capture_output=True, text=True)
+            assert any_weights.returncode == 0 and "undecided" not in any_weights.stdout, any_weights.stdout
         for kdop in ("6", "18"):
             right = subprocess.run([program, *prove, "--kdop", kdop], capture_output=True, text=True)
             assert right.returncode == 0 and ", 0 violated\n" in right.stdout and "undecided" not in right.stdout, \

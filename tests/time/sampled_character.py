@@ -169,8 +169,11 @@ class Character:
                 product(world_of(node), [[b[4 * c + r] for c in range(4)] for r in range(4)])
                 for node, b in zip(joints, binds)]
 
-    def vertices(self, channels, t):
+    def vertices(self, channels, t, amount_of=None):
+        """`amount_of`: draws the weight of a morph target, whatever the clip says."""
         for (_, _, positions, indices, weights, _, targets, _), amount, maps in self.posed(channels, t):
+            if amount_of:
+                amount = [amount_of() for _ in targets]
             for k, (p, index, weight) in enumerate(zip(positions, indices, weights)):
                 p = [x + sum(a * t[k][r] for a, t in zip(amount, targets)) for r, x in enumerate(p)]
                 total = sum(weight)
