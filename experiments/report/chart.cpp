@@ -116,16 +116,26 @@ LabelHeights label_heights(const Chart& chart, double low, double high)
     std::vector<std::size_t> order(at.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return at[a] < at[b]; });
-    double least = line / 2; // upwards where they are too near, then down again from the top
-    for (const std::size_t i : order) {
-        at[i] = std::max(at[i], least);
-        least = at[i] + line;
+    // As near to their lines as may be, one above the other: the least squares of places less i lines that never fall.
+    std::vector<std::pair<double, std::size_t>> blocks; // mean, and of how many
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        blocks.emplace_back(at[order[i]] - static_cast<double>(i) * line, 1);
+        while (blocks.size() > 1 && blocks[blocks.size() - 2].first > blocks.back().first) {
+            const auto [mean, count] = blocks.back();
+            blocks.pop_back();
+            auto& [below, of] = blocks.back();
+            below =
+                (below * static_cast<double>(of) + mean * static_cast<double>(count)) / static_cast<double>(of + count);
+            of += count;
+        }
     }
-    double most = 1 - line / 2;
-    for (auto i = order.rbegin(); i != order.rend(); ++i) {
-        at[*i] = std::min(at[*i], most);
-        most = at[*i] - line;
-    }
+    std::size_t i = 0;
+    for (const auto& [mean, count] : blocks)
+        for (std::size_t n = 0; n < count; ++n, ++i) {
+            const double above = static_cast<double>(order.size() - 1 - i) * line + line / 2,
+                         under = static_cast<double>(i) * line + line / 2; // what the others need
+            at[order[i]] = std::clamp(mean + static_cast<double>(i) * line, under, 1 - above);
+        }
     return at;
 }
 

@@ -3,7 +3,7 @@
 the specification: dense samples of every clip must lie inside, and reach nearly as far."""
 import ast, json, math, os, random, re, struct, subprocess, sys, tempfile, zipfile
 
-from made_characters import face, wave
+from made_characters import crowd, face, wave
 from sampled_character import Character
 
 program, shared = sys.argv[1], sys.argv[2] if len(sys.argv) > 2 else ""
@@ -42,6 +42,7 @@ def check(name, samples, *options, amount_of=None):
 
 with tempfile.TemporaryDirectory() as folder:
     for made, kinds in ((face(folder), ("no-remainder", "half-bump", "first-half", "still-morphs")),
+                        (crowd(folder), ("no-remainder", "half-bump", "first-half", "still-morphs")),
                         (wave(folder), ("no-remainder", "half-bump", "first-half"))):
         check(made, 100)
         if "still-morphs" in kinds:
@@ -59,6 +60,17 @@ with tempfile.TemporaryDirectory() as folder:
         for kind in kinds:
             wrong = subprocess.run([program, *prove, "--sabotage", kind], capture_output=True, text=True)
             assert wrong.returncode == 1, "%s is not found: %s" % (kind, wrong.stdout)
+    # Instances that are none are named.
+    good = json.load(open(os.path.join(folder, "crowd.gltf")))
+    for change, said in ((lambda at: at.clear(), "has none of TRANSLATION, ROTATION and SCALE"),
+                         (lambda at: at.update(SCALE=0), "another number of SCALE than of the others"),
+                         (lambda at: at.update(TRANSLATION=999), "999")):
+        bad = json.loads(json.dumps(good))
+        change(bad["nodes"][1]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"])
+        with open(os.path.join(folder, "bad.gltf"), "w") as file:
+            json.dump(bad, file)
+        run = subprocess.run([program, "bake", file.name], capture_output=True, text=True)
+        assert run.returncode == 2 and said in run.stderr and run.stderr.count("\n") == 1, run.stderr
     # A page of a character with morph targets has bounds for all times and no others, over all of its frames.
     shown = json.loads(subprocess.run([program, "view", os.path.join(folder, "face.gltf"), "--swept", "--json"],
                                       capture_output=True, text=True).stdout.splitlines()[0])["view"]

@@ -126,6 +126,32 @@ def face(folder, name="face.gltf"):
                 {"sampler": 3, "target": {"node": 0, "path": "rotation"}}]}]})
 
 
+def crowd(folder):
+    """A mesh that a turning node draws at five places, with morph targets; and once more where it is given alone."""
+    make = Maker()
+    positions = make.add([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0.2, 0.2, 0.7)], "VEC3")
+    indices = make.add([(i,) for i in (0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3)], "SCALAR", 5123)
+    grow = make.add([(0, 0, 0), (0.4, 0, 0), (0, -0.3, 0), (0, 0, 0.5)], "VEC3")
+    places = make.add([(2 * i, i % 2, 0.3 * i) for i in range(5)], "VEC3")
+    turns = make.add([turn(0.7 * i) for i in range(5)], "VEC4")
+    sizes = make.add([(1 + 0.2 * i, 1, 0.5) for i in range(5)], "VEC3")
+    times = make.add([(0.0,), (1.0,)], "SCALAR")
+    samplers = [{"input": times, "output": make.add([turn(0), turn(2.5)], "VEC4")},
+                {"input": times, "output": make.add([(0.0,), (1.0,)], "SCALAR")}]
+    instanced = {"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": places, "ROTATION": turns,
+                                                            "SCALE": sizes}}}
+    return make.write(folder, "crowd.gltf", {
+        "extensionsUsed": list(instanced), "extensionsRequired": list(instanced),
+        "scenes": [{"nodes": [0, 2]}],
+        "nodes": [{"children": [1], "rotation": [0, 0.6, 0, 0.8]}, {"mesh": 0, "extensions": instanced},
+                  {"mesh": 0, "translation": [-3, 0, 0]}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": positions}, "indices": indices,
+                                    "targets": [{"POSITION": grow}]}]}],
+        "animations": [{"name": "turn", "samplers": samplers, "channels": [
+            {"sampler": 0, "target": {"node": 0, "path": "rotation"}},
+            {"sampler": 1, "target": {"node": 1, "path": "weights"}}]}]})
+
+
 def many_clips(folder, clips):
     """A bent strip on one joint with clips of their own lengths."""
     make = Maker()

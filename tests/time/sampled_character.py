@@ -109,6 +109,9 @@ class Character:
             skin = j["skins"][node["skin"]] if "skin" in node else {"joints": [i]}  # a rigid part
             binds = (self.file.accessor(skin["inverseBindMatrices"]) if "inverseBindMatrices" in skin else
                      [identity] * len(skin["joints"]))
+            places = node.get("extensions", {}).get("EXT_mesh_gpu_instancing", {}).get("attributes")
+            places = [(skin["joints"], binds)] if places is None else [
+                (skin["joints"], [[m[r][c] for c in range(4) for r in range(4)]]) for m in self.instances(places)]
             mesh = j["meshes"][node["mesh"]]
             for primitive in mesh["primitives"]:
                 at = primitive["attributes"]
@@ -119,7 +122,15 @@ class Character:
                 targets = [self.file.accessor(t["POSITION"]) if "POSITION" in t else [(0, 0, 0)] * len(positions)
                            for t in primitive.get("targets", [])]
                 still = node.get("weights", mesh.get("weights", [0] * len(targets)))
-                self.parts.append((skin["joints"], binds, positions, joints, weights, i, targets, still))
+                for nodes, binds in places:
+                    self.parts.append((nodes, binds, positions, joints, weights, i, targets, still))
+
+    def instances(self, attributes):
+        """The matrices of the places at which a mesh is drawn, in the space of its node."""
+        given = [(self.file.accessor(attributes[name]) if name in attributes else None, default) for name, default in
+                 (("TRANSLATION", (0, 0, 0)), ("ROTATION", (0, 0, 0, 1)), ("SCALE", (1, 1, 1)))]
+        count = max(len(rows) for rows, _ in given if rows)
+        return [matrix_of(*(rows[i] if rows else default for rows, default in given)) for i in range(count)]
 
     def clips(self):
         out = []

@@ -10,9 +10,9 @@ namespace cinch {
 namespace {
 
 // Modelled wherever they are allowed: quantised positions are read as any integers are; hidden nodes are not drawn;
-// pointers at nodes are channels.
+// pointers at nodes are channels; instances are meshes.
 constexpr std::string_view modelled_when_required[] = {"KHR_mesh_quantization", "KHR_node_visibility",
-                                                       "KHR_animation_pointer", "VRMC_vrm"};
+                                                       "KHR_animation_pointer", "VRMC_vrm", "EXT_mesh_gpu_instancing"};
 
 constexpr std::string_view harmless_beginnings[] = {
     "KHR_materials_", "EXT_materials_", "ADOBE_materials_", "VRMC_materials_", "KHR_texture_",

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <Eigen/Geometry>
 
@@ -123,7 +124,7 @@ GltfScene read_scene(const GltfDocument& document, Missing& missing, std::vector
         seen[i] = 1;
         const GltfValue node = document.at("nodes", i);
         visible[i] = !is_hidden(node) && (out.parent[i] < 0 || visible[static_cast<std::size_t>(out.parent[i])]);
-        note_extensions(node, missing, {"KHR_node_visibility"});
+        note_extensions(node, missing, {"KHR_node_visibility", instancing});
         out.nodes.push_back(i);
         out.visible.push_back(visible[i]);
         const std::vector<std::size_t> children = children_of(node);
@@ -147,7 +148,7 @@ std::uint32_t GltfSkeleton::add_bone(std::size_t node)
     for (; !path.empty(); path.pop_back()) {
         const std::size_t i = path.back();
         const GltfValue value = document_.at("nodes", i);
-        note_extensions(value, missing_, {"KHR_node_visibility"});
+        note_extensions(value, missing_, {"KHR_node_visibility", instancing});
         Bone bone;
         if (scene_.parent[i] >= 0)
             bone.parent = bone_of_node_[static_cast<std::size_t>(scene_.parent[i])];
@@ -182,6 +183,53 @@ std::uint32_t GltfSkeleton::carrier(std::size_t node)
     out_.joints.push_back({add_bone(node), identity_map});
     out_.influences.node_count = static_cast<std::uint32_t>(out_.joints.size());
     return out_.influences.node_count - 1;
+}
+
+std::vector<std::uint32_t> GltfSkeleton::instances(std::size_t node)
+{
+    const GltfValue value = document_.at("nodes", node), attributes = value["extensions"][instancing]["attributes"];
+    // Each is a bone of its own below the node's, so that nothing is rounded.
+    struct Given {
+        const char* name;
+        std::size_t components;
+        std::vector<double> numbers;
+    } given[] = {{"TRANSLATION", 3, {}}, {"ROTATION", 4, {}}, {"SCALE", 3, {}}};
+    std::optional<std::size_t> count;
+    for (Given& g : given) {
+        const auto index = attributes.index_of(g.name);
+        if (!index)
+            continue;
+        g.numbers = read_accessor(document_, *index, g.components, missing_);
+        const std::size_t elements = g.numbers.size() / g.components;
+        if (count.value_or(elements) != elements)
+            attributes.fail("has another number of " + std::string(g.name) + " than of the others");
+        count = elements;
+        for (std::size_t i = 0; i < g.numbers.size(); ++i)
+            if (!std::isfinite(g.numbers[i]))
+                attributes.fail("has " + std::string(g.name) + " of instance " + std::to_string(i / g.components) +
+                                " that is not finite");
+    }
+    if (!count)
+        attributes.fail("has none of TRANSLATION, ROTATION and SCALE");
+    const std::uint32_t parent = add_bone(node);
+    std::vector<std::uint32_t> joints;
+    for (std::size_t i = 0; i < *count; ++i) {
+        Bone bone;
+        bone.parent = parent;
+        auto copy = [&](const Given& g, auto& to) {
+            if (!g.numbers.empty())
+                std::copy_n(g.numbers.begin() + static_cast<std::ptrdiff_t>(i * g.components), to.size(), to.begin());
+        };
+        copy(given[0], bone.translation);
+        copy(given[1], bone.rotation);
+        copy(given[2], bone.scale);
+        out_.joints.push_back({static_cast<std::uint32_t>(out_.bones.size()), identity_map});
+        joints.push_back(static_cast<std::uint32_t>(out_.joints.size() - 1));
+        out_.bones.push_back(bone);
+        can_animate_.push_back(true);
+    }
+    out_.influences.node_count = static_cast<std::uint32_t>(out_.joints.size());
+    return joints;
 }
 
 std::uint32_t GltfSkeleton::first_joint(std::size_t skin)

@@ -6,6 +6,9 @@
 
 namespace cinch {
 
+/// Draws a node's mesh at many places of the node's own space.
+inline constexpr const char* instancing = "EXT_mesh_gpu_instancing";
+
 /// What a file's default scene draws.
 struct GltfScene {
     std::vector<std::int64_t> parent; ///< of every node of the file; -1: none
@@ -29,6 +32,8 @@ public:
     std::uint32_t first_joint(std::size_t skin);
     /// A joint of its own for a mesh that a node draws without a skin.
     std::uint32_t carrier(std::size_t node);
+    /// A joint for each place at which EXT_mesh_gpu_instancing draws the mesh of a node that has it.
+    std::vector<std::uint32_t> instances(std::size_t node);
     std::uint32_t joint_count(std::size_t skin) const { return joint_count_[skin]; }
     /// The bone of a node, or none.
     std::uint32_t bone_of(std::size_t node) const { return bone_of_node_[node]; }

@@ -41,6 +41,9 @@ bool is_drawn(const GltfValue& primitive)
     return primitive["attributes"].has("POSITION");
 } // the specification: else there is nothing to draw
 
+// Of all that a scene draws: a few bytes of instances make millions of them.
+constexpr std::size_t most_triangles = 100'000'000;
+
 class SurfaceReader {
 public:
     SurfaceReader(GltfDocument& document, GltfSkeleton& skeleton, Morphs with_morphs, Missing& missing, Character& out)
@@ -67,6 +70,12 @@ public:
         }
         if (!drawn)
             return;
+        const auto extensions = node.find("extensions");
+        const bool is_instanced = extensions && extensions->has(instancing);
+        if (is_instanced && (skin || !(*extensions)[instancing].has("attributes"))) { // a skin knows no such places
+            missing_.add(std::string("the extension ") + instancing, node.named());
+            return;
+        }
         GltfMorph morph = read_morph(node, node_index, mesh);
         const bool morphs_apart = with_morphs_ == Morphs::read && morph.targets > 0;
         if (skin && !placed_.insert({morph.mesh, *skin, morphs_apart ? node_index : 0}).second)
@@ -79,11 +88,19 @@ public:
         }
         if (morph.targets > 0)
             morphs.push_back(morph);
-        const Carrier carrier{skin, skin ? 0 : skeleton_.carrier(node_index)};
-        out_.carried += !skin;
-        for (std::size_t p = 0; p < primitives.size(); ++p)
-            if (is_drawn(primitives[p]))
-                add_primitive(primitives[p], carrier);
+        std::vector<Carrier> carriers;
+        if (skin)
+            carriers.push_back({skin, 0});
+        else if (!is_instanced)
+            carriers.push_back({{}, skeleton_.carrier(node_index)});
+        else
+            for (const std::uint32_t joint : skeleton_.instances(node_index))
+                carriers.push_back({{}, joint});
+        out_.carried += skin ? 0 : carriers.size();
+        for (const Carrier& carrier : carriers)
+            for (std::size_t p = 0; p < primitives.size(); ++p)
+                if (is_drawn(primitives[p]))
+                    add_primitive(primitives[p], carrier);
     }
 
     void finish()
@@ -172,7 +189,12 @@ private:
                                 carrier.skin ? influences_of(primitive, k, joints, weights, *carrier.skin)
                                              : Row{{carrier.joint, 1}},
                                 displaced[k]);
-        for (const Triangle& t : triangles_of(unpacked ? unpacked->indices : vertex_order(primitive, vertices), mode))
+        const std::vector<Triangle> triangles =
+            triangles_of(unpacked ? unpacked->indices : vertex_order(primitive, vertices), mode);
+        if (out_.mesh.triangles.size() + triangles.size() > most_triangles)
+            primitive.fail("is drawn so often that the scene has more than " + std::to_string(most_triangles) +
+                           " triangles");
+        for (const Triangle& t : triangles)
             out_.mesh.triangles.push_back({vertex_of[t[0]], vertex_of[t[1]], vertex_of[t[2]]});
     }
 
