@@ -36,9 +36,13 @@ std::pair<double, double> range_of_weights(const std::string& text)
 }
 
 // From here on the body's morph targets have any weights.
-void free_weights(TimedBody& body, Character& character, const InputOptions& options)
+void free_weights(TimedBody& body, Character& character, const InputOptions& options, const Engine& engine)
 {
     const auto [least, greatest] = range_of_weights(options.morphs);
+    // An engine's sums are rounded against all that they add up, which the extent of their box holds only if 0 is in
+    // it.
+    if (!engine.exact() && (least > 0 || greatest < 0))
+        throw InputError("--morphs with --engine, --nlerp or --joint-error: expected limits with 0 between them");
     if (character.targets.empty())
         throw InputError::in_file(options.input, "has no morph targets for --morphs");
     body.any_weights = AnyWeights{std::make_shared<const Character>(character), least, greatest};
@@ -79,7 +83,7 @@ std::vector<TimedBody> load_timed(const InputOptions& options, const Engine& eng
     body.character = loaded;
     body.input = load_character_surface(what, character);
     if (!what.morphs.empty())
-        free_weights(body, character, what);
+        free_weights(body, character, what, engine);
     std::vector<const Character::Animation*> wanted;
     for (const Character::Animation& animation : character.animations)
         if (what.clip.empty() || animation.name == what.clip)

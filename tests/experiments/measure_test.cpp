@@ -145,6 +145,10 @@ TEST_CASE("cinch scaling: every method at every size, figures with their targets
         }
         CHECK(r["ns_per_bound"] > 0);
         CHECK(r["paper_us"] > 0);
+        if (r["method"] == "best")
+            CHECK(r["over_default"] == 1);
+        if (r["method"] == "optimal" || r["method"] == "textbook")
+            CHECK(r["over_default"] > 3);
         ++sizes[r["method"]];
     }
     CHECK(figures >= 8);

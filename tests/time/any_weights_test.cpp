@@ -118,4 +118,22 @@ TEST_CASE("one box stands for all weights of a character, and clips set none")
     CHECK(any.targets[1].vertex.empty());
     CHECK_THROWS_AS(with_any_weights(character, 1, 0), std::invalid_argument);
     CHECK_THROWS_AS(with_any_weights(character, 0, HUGE_VAL), std::invalid_argument);
+    CHECK_THROWS_AS(with_any_weights(character, 0, 1e308), InputError); // 4e308
+
+    // Sums that cancel: the box holds them as they are computed, in either order.
+    Character cancelling;
+    const double parts[] = {0.1, 1e10, -1e10, 0.7, 3e-9, -0.3};
+    for (const double d : parts)
+        cancelling.targets.push_back({{0}, {{d, 0, 0}}, {}});
+    cancelling.target_weights.assign(std::size(parts), 0);
+    const MorphTarget point = with_any_weights(cancelling, 1. / 3, 1. / 3).targets[0];
+    double up = 0, down = 0;
+    for (std::size_t i = 0; i < std::size(parts); ++i) {
+        up += 1. / 3 * parts[i];
+        down += 1. / 3 * parts[std::size(parts) - 1 - i];
+    }
+    CHECK(up != down);
+    for (const double sum : {up, down})
+        CHECK(std::abs(sum - point.displacement[0][0]) <= point.half[0][0]);
+    CHECK(point.half[0][0] < 1e-4);
 }

@@ -4,6 +4,7 @@
 #include <limits>
 #include <map>
 #include <stdexcept>
+#include <string>
 
 #include "cinch/io.hpp"
 
@@ -36,6 +37,10 @@ Character with_any_weights(Character character, double least, double greatest)
                  absolute = roundings * std::numeric_limits<double>::denorm_min();
     MorphTarget all;
     for (const auto& [vertex, sum] : of) {
+        if (!sum.terms.allFinite())
+            throw InputError::in_file(character.file, "morph targets displace vertex " + std::to_string(vertex) +
+                                                          " beyond all doubles at weights from " +
+                                                          std::to_string(least) + " to " + std::to_string(greatest));
         const Vec3 centre = 0.5 * sum.low + 0.5 * sum.high;
         all.vertex.push_back(vertex);
         all.displacement.push_back(centre);

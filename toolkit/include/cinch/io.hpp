@@ -172,7 +172,7 @@ Clip rest_pose(const Character& character);
 /// The character with its morph targets (Morphs::read) at any weights from `least` to `greatest` at any time, whatever
 /// its clips say: for faces that a program moves. They become one target of weight 1, whose displacement of a vertex is
 /// a box with every Σ_i a_i d_i in it, as exact as computed in doubles; those after it displace nothing.
-/// Throws std::invalid_argument unless least <= greatest, both finite.
+/// Throws std::invalid_argument unless least <= greatest, both finite; InputError where such a sum overflows.
 Character with_any_weights(Character character, double least = 0, double greatest = 1);
 
 /// Bounds every BV of a character for all times of a clip: every curve as the glTF specification interpolates it, morph
