@@ -99,6 +99,67 @@ TEST_CASE("bounds for any weights of morph targets hold for all of them at all t
     CHECK(2 * found > cases / 2); // a third of the ranges is a point
 }
 
+TEST_CASE("weights of a range that is a point are refuted and proven as known ones are")
+{
+    Random random(23);
+    std::size_t violated = 0;
+    for (std::size_t i = 0, cases = 0; cases < test::share_of(40); ++i) {
+        const TimeCase drawn = draw_time_case(random());
+        if (drawn.character.targets.empty())
+            continue;
+        CAPTURE(i);
+        Character known = drawn.character;
+        std::fill(known.target_weights.begin(), known.target_weights.end(), 0.25);
+        known.rest.morphs.clear();
+        const int kdop = kdops[i % kdops.size()];
+        const TimedMotion motion = character_motion(known, known.rest, drawn.surface);
+        IntervalRefitter refit(drawn.bvh, drawn.surface, {.kdop = kdop}, known.targets);
+        std::vector<double> supports(drawn.bvh.bvs.size() * static_cast<std::size_t>(kdop)); // of one pose
+        refit.at(motion.at(motion.first_s()), known.target_weights, supports);
+        exact::TimeVerdict verdict[2];
+        try {
+            for (const bool any : {false, true}) {
+                const exact::ClipEnclosure clip(known, known.rest,
+                                                any ? std::optional(exact::Enclosure{0.25, 0.25}) : std::nullopt);
+                const exact::TimeChecker check(drawn.surface, drawn.bvh, clip, known.targets, kdop, [] {});
+                verdict[any] = check(motion.first_s(), motion.last_s(), supports);
+            }
+        } catch (const InputError&) { // half a turn to the bit
+            continue;
+        }
+        ++cases;
+        CHECK(verdict[0].violated == verdict[1].violated);
+        CHECK(verdict[0].proven() == verdict[1].proven());
+        violated += verdict[1].violated;
+    }
+    CHECK(violated > 100);
+}
+
+TEST_CASE("what is displaced far from a bone that turns moves as far as it is displaced")
+{
+    Character character;
+    character.mesh = {{{0, 0, 0}, {1e-3, 0, 0}, {0, 1e-3, 0}}, {{0, 1, 2}}};
+    character.influences = {1, {0, 1, 2, 3}, {0, 0, 0}, {1, 1, 1}};
+    character.joints = {{0, identity_map}};
+    character.bones.resize(1);
+    character.carried = 1;
+    character.targets = {{{0, 1, 2}, {{1, 0, 0}, {1, 0, 0}, {1, 0, 0}}, {}}};
+    character.target_weights = {0};
+    character.rest.first_s = 0;
+    character.rest.last_s = 1;
+    character.rest.curves = {{0,
+                              Curve::Target::rotation,
+                              Curve::Interpolation::linear,
+                              {0, 1},
+                              {{0, 0, 0, 1}, {0, 0, std::sin(1.1), std::cos(1.1)}}}};
+    TimeCase turning{character, surface_of(character), {}};
+    turning.bvh = build_bvh(turning.surface, 1);
+    const exact::ClipEnclosure clip(character, character.rest, exact::Enclosure{0, 1});
+    const exact::TimeChecker check(turning.surface, turning.bvh, clip, character.targets, 6, [] {});
+    const exact::TimeVerdict verdict = check(0, 1, bounds_of(turning, with_any_weights(character), {}, 1e6));
+    CHECK(verdict.proven() == verdict.bounds);
+}
+
 TEST_CASE("one box stands for all weights of a character, and clips set none")
 {
     Character character;
