@@ -8,6 +8,8 @@
 #include "toolkit/bounds/readable.hpp"
 #include "toolkit/deform/kernel/targets.hpp"
 #include "toolkit/hierarchy/packed_bvh.hpp"
+#include <algorithm>
+#include <random>
 
 using namespace cinch;
 
@@ -49,27 +51,38 @@ TEST_CASE("the same bits on every target of this machine")
     const auto targets = kernel_targets();
     REQUIRE(targets.size() >= 1);
     CAPTURE(targets);
+    struct Case {
+        Method kind;
+        int kdop;
+        Rounding rounding;
+        int passes;
+    };
+    std::vector<Case> cases;
     for (Method kind : kinds)
         for (int kdop : kdops)
             for (Rounding rounding : {Rounding::proven, Rounding::plain})
                 for (int passes : {0, 1, 3}) {
-                    std::vector<std::vector<double>> single, twice;
-                    for (const std::string& target : targets) {
-                        REQUIRE(force_kernel_target(target));
-                        REQUIRE(kernel_target() == target);
-                        single.push_back(scene.bounds<float>(kind, kdop, rounding, passes, passes == 3));
-                        twice.push_back(scene.bounds<double>(kind, kdop, rounding, passes, passes == 3,
-                                                             passes == 1 ? RestShape::obb : RestShape::aabb));
-                    }
-                    force_kernel_target("");
-                    INFO(name_of(kind) << ", k " << kdop << ", passes " << passes);
-                    for (std::size_t i = 1; i < targets.size(); ++i) {
-                        CHECK((single[i] == single[0]));
-                        CHECK((twice[i] == twice[0]));
-                    }
+                    cases.push_back({kind, kdop, rounding, passes});
                     if (passes == 1 && kind != Method::local && kind != Method::support && kind != Method::best)
                         break; // no passes; two rounds for the two shapes of boxes
                 }
+    std::ranges::shuffle(cases, std::mt19937(1)); // a share of them has some of everything
+    for (const auto& [kind, kdop, rounding, passes] : test::share_of(cases)) {
+        std::vector<std::vector<double>> single, twice;
+        for (const std::string& target : targets) {
+            REQUIRE(force_kernel_target(target));
+            REQUIRE(kernel_target() == target);
+            single.push_back(scene.bounds<float>(kind, kdop, rounding, passes, passes == 3));
+            twice.push_back(scene.bounds<double>(kind, kdop, rounding, passes, passes == 3,
+                                                 passes == 1 ? RestShape::obb : RestShape::aabb));
+        }
+        force_kernel_target("");
+        INFO(name_of(kind) << ", k " << kdop << ", passes " << passes);
+        for (std::size_t i = 1; i < targets.size(); ++i) {
+            CHECK((single[i] == single[0]));
+            CHECK((twice[i] == twice[0]));
+        }
+    }
     CHECK_FALSE(force_kernel_target("none such"));
     CHECK(kernel_target() == targets.front());
 }
@@ -116,7 +129,7 @@ TEST_CASE("kernels agree with the formulas of the kinds beyond the ladder, and b
             const auto fast = scene.bounds<double>(method, kdop, Rounding::proven, 1),
                        single = scene.bounds<float>(method, kdop, Rounding::proven, 1);
             std::size_t place = 0, equal = 0;
-            for (const auto& frame : scene.e.frames)
+            for (const auto& frame : test::share_of(scene.e.frames))
                 for (std::size_t bv = 0; bv < scene.bvh.bvs.size(); ++bv) {
                     const ChosenKind& kind = kinds_of[bv];
                     formula(kind.kind, bv, frame, kind.start, simple);

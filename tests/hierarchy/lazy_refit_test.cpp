@@ -229,6 +229,7 @@ TEST_CASE(
     "the same far from the origin, at rest or by transforms that cancel, and for scales up to where nothing is known")
 {
     Dice dice(52);
+    const auto options_of_all = some_options();
     for (const double far : {1e3, 1e6, 1e12})
         for (const double scale : {1.0, 1e-7, 1e9}) {
             TriangleMesh mesh = brain(60);
@@ -242,7 +243,7 @@ TEST_CASE(
             Maps apart = there; // the nodes' images far from each other
             for (AffineMap& map : apart)
                 map.m[dice.below(3)][3] += 1e5 * far * dice.symmetric();
-            for (const LazyOptions& options : some_options())
+            for (const LazyOptions& options : share_of(options_of_all))
                 CHECK(go_through(dice, surface, {{here}, {there}, {still}, {apart}, {here}}, options, size_of(options))
                           .inner > 20);
         }
@@ -254,7 +255,7 @@ TEST_CASE(
         const DeformableSurface at_rest = patchy(dice, mesh, 8, 4);
         const Maps turned = around(dice, 8, dice.rotation(), scale * dice.point(), 0.1),
                    scaled = around(dice, 8, scale * dice.rotation(), scale * dice.point(), 0);
-        for (const LazyOptions& options : some_options()) {
+        for (const LazyOptions& options : share_of(options_of_all)) {
             go_through(dice, at_rest, {{turned}, {turned}}, options, size_of(options));
             go_through(dice, by_motion, {{scaled}, {scaled}}, options, size_of(options));
         }
@@ -264,6 +265,7 @@ TEST_CASE(
 TEST_CASE("the same for given vertices, wherever they are")
 {
     Dice dice(53);
+    const auto options_of_all = some_options();
     const DeformableSurface surface = soft(brain(80), 10);
     for (const double scale : {1e-45, 1e-38, 1e-10, 1.0, 1e10, 1e36, 1e39})
         for (const double far : {0.0, 1e3, 1e12}) {
@@ -271,7 +273,7 @@ TEST_CASE("the same for given vertices, wherever they are")
             for (Positions& places : given)
                 for (const Vec3& x : surface.mesh.vertices)
                     places.push_back(scale * (x + far * Vec3(1, -0.7, 0.3) + 0.1 * dice.point()));
-            for (const LazyOptions& options : some_options())
+            for (const LazyOptions& options : share_of(options_of_all))
                 go_through(dice, surface, {{{}, given[0]}, {{}, given[1]}, {{}, given[2]}}, options, size_of(options));
         }
 }
