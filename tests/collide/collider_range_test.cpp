@@ -272,5 +272,5 @@ TEST_CASE("a body of one size on the surface of a body of another, at every powe
             pairs += check(*colliders[turn], surface, frame, nullptr, "given, " + what);
             pairs += check(*colliders[turn], surface, moving, nullptr, "by motion, " + what, power > 1000);
         }
-    CHECK(pairs > 1000 / power_stride());
+    CHECK(pairs > static_cast<std::size_t>(1000 / power_stride()));
 }

@@ -131,12 +131,12 @@ TEST_CASE("triangle pairs agree with an exact clipper at every power of two, the
             if (intersect(place(a), place(b), &counts) != expected || intersect(place(b), place(a)) != expected)
                 FAIL("powers " << e[0] << " " << e[1] << " " << e[2] << ": " << text(doubles(a), doubles(b)));
         }
-    const int some = 100 / power_stride();
+    const auto some = static_cast<std::size_t>(100 / power_stride());
     CHECK(answers[0] > some);
     CHECK(answers[1] > some);
-    CHECK(counts.in_double > static_cast<std::size_t>(some));
-    CHECK(counts.in_expansion > static_cast<std::size_t>(some));
-    CHECK(counts.in_integer > static_cast<std::size_t>(some));
+    CHECK(counts.in_double > some);
+    CHECK(counts.in_expansion > some);
+    CHECK(counts.in_integer > some);
 }
 
 TEST_CASE("triangle pairs that touch up to rounding agree with an exact clipper in every order, at every power of two")
