@@ -40,7 +40,8 @@ void BvCheck::check(std::size_t bv, std::span<const std::uint32_t> vertices, std
         return;
     }
     const std::size_t first = bv * 2 * frame_.axes.size();
-    const bool rest_holds = frame_.methods != Method::vertices && !(out.failed[first] & rest_data);
+    displaced_ = std::any_of(vertices.begin(), vertices.end(), [this](std::size_t v) { return frame_.displaced(v); });
+    const bool rest_holds = frame_.methods != Method::vertices && !displaced_ && !(out.failed[first] & rest_data);
     BvReport& report = out.bvs[bv];
     double true_half[3] = {0, 0, 0}, bound_half[3] = {0, 0, 0};
     for (axis_ = 0; axis_ < frame_.axes.size(); ++axis_) {
@@ -87,7 +88,7 @@ void BvCheck::check_direction(const Interval& support, bool rest_holds, Loss& lo
         optimum_ = dual_value(rest_.space, extrema(), Interval(greedy_lambda()));
     block_->decided_by_filter += !exact_used_;
     if (!rest_holds)
-        loss.rounding += scale() * (bound_ - middle(support));
+        (displaced_ ? loss.corner : loss.rounding) += scale() * (bound_ - middle(support));
     else if (box_is_finite_)
         attribute(support, loss);
 }
@@ -161,8 +162,7 @@ void BvCheck::check_exact_vertices(const Interval& support)
             continue;
         exact_used_ = true;
         const Exact value =
-            along(deformed<Exact>(frame_.surface.mesh.vertices[k], frame_.surface.weights.of(k), frame_.maps), axis(),
-                  against_);
+            along(deformed(frame_.rest<Exact>(k), frame_.surface.weights.of(k), frame_.maps), axis(), against_);
         if (!at_most(value, bound_))
             return fail(exact_vertices, "exact vertex " + std::to_string(k) + " " + gap(value, bound_));
     }

@@ -19,6 +19,26 @@ struct Frame {
     std::span<const Axis> axes;
     std::vector<Point<Interval>> exact_vertices; // enclosures
     std::vector<Vec3> computed_vertices;
+    const Displacements& displacements;
+    std::span<const double> weights; // of morph targets; empty where they displace nothing
+
+    /// Where a vertex is at rest: v⁰ + Σ_i a_i d_i.
+    template <class N> Point<N> rest(std::size_t v) const
+    {
+        Point<N> out = as_point<N>(surface.mesh.vertices[v]);
+        if (!weights.empty())
+            for (const Displacements::One& d : displacements.of(v))
+                for (std::size_t c = 0; c < 3; ++c)
+                    out[c] = out[c] + N(weights[d.target]) * N(d.by[static_cast<int>(c)]);
+        return out;
+    }
+    bool displaced(std::size_t v) const
+    {
+        for (const Displacements::One& d : displacements.of(v))
+            if (!weights.empty() && weights[d.target] != 0)
+                return true;
+        return false;
+    }
 };
 
 /// What the BVs of one task add to a verdict.
@@ -72,6 +92,7 @@ private:
     std::span<const std::uint32_t> vertices_;
     std::vector<Interval> plus_, minus_; // exact extrema along the axis and against it
     Interval optimum_;
+    bool displaced_ = false; // by morph targets
     std::vector<std::size_t> order_;
 };
 

@@ -14,7 +14,7 @@ namespace cinch::exact {
 template <class N> using Point = std::array<N, 3>;
 
 /// v = Σ_j w_j (A_j x + t_j), Eq. 3.
-template <class N> Point<N> deformed(const Vec3& rest, Weights::Row row, std::span<const AffineMap> maps)
+template <class N> Point<N> deformed(const Point<N>& rest, Weights::Row row, std::span<const AffineMap> maps)
 {
     Point<N> v{N(0), N(0), N(0)};
     for (std::size_t i = 0; i < row.node.size(); ++i)
@@ -22,13 +22,18 @@ template <class N> Point<N> deformed(const Vec3& rest, Weights::Row row, std::sp
             const auto& m = maps[row.node[i]].m[r];
             N image = N(m[3]);
             for (int s = 0; s < 3; ++s)
-                image = image + N(m[s]) * N(rest[s]);
+                image = image + N(m[s]) * rest[static_cast<std::size_t>(s)];
             v[static_cast<std::size_t>(r)] = v[static_cast<std::size_t>(r)] + N(row.weight[i]) * image;
         }
     return v;
 }
 
 template <class N> Point<N> as_point(const Vec3& v) { return {N(v[0]), N(v[1]), N(v[2])}; }
+
+template <class N> Point<N> deformed(const Vec3& rest, Weights::Row row, std::span<const AffineMap> maps)
+{
+    return deformed(as_point<N>(rest), row, maps);
+}
 
 /// γ·v for γ = axis, or −axis where `against`.
 template <class N> N along(const Point<N>& v, const Axis& axis, bool against)

@@ -32,8 +32,10 @@ void no_pause() {}
 
 } // namespace
 
-Verifier::Verifier(const DeformableSurface& surface, const Bvh& bvh, void (*pause)())
-    : surface_(surface), bvh_(bvh), pause_(pause ? pause : no_pause)
+Verifier::Verifier(const DeformableSurface& surface, const Bvh& bvh, void (*pause)(),
+                   std::span<const MorphTarget> targets)
+    : surface_(surface), bvh_(bvh), pause_(pause ? pause : no_pause), targets_(targets),
+      displacements_(targets, surface.mesh.vertices.size())
 {
     require_default_arithmetic();
     require_dyadic_weights(surface);
@@ -50,10 +52,11 @@ Verifier::Verifier(const DeformableSurface& surface, const Bvh& bvh, void (*paus
 }
 
 FrameVerdict Verifier::check(std::span<const AffineMap> maps, Methods methods, int kdop,
-                             std::span<const double> supports, RestShape shape) const
+                             std::span<const double> supports, RestShape shape, std::span<const double> weights) const
 {
     const auto k = static_cast<std::size_t>(kdop);
-    if (!is_kdop(kdop) || maps.size() != surface_.weights.node_count || supports.size() != bvh_.bvs.size() * k)
+    if (!is_kdop(kdop) || maps.size() != surface_.weights.node_count || supports.size() != bvh_.bvs.size() * k ||
+        (!weights.empty() && weights.size() != displacements_.targets()))
         throw std::invalid_argument("Verifier::check: sizes do not fit");
     for (const AffineMap& map : maps)
         for (const auto& row : map.m)
@@ -62,17 +65,22 @@ FrameVerdict Verifier::check(std::span<const AffineMap> maps, Methods methods, i
                     throw std::invalid_argument(
                         "Verifier::check: a transform is not finite; there is no exact position to compare with");
 
+    if (!std::all_of(weights.begin(), weights.end(), [](double a) { return std::isfinite(a); }))
+        throw std::invalid_argument("Verifier::check: a weight is not finite; there is no exact position to compare "
+                                    "with");
     require_default_arithmetic();
     const std::size_t vertex_count = surface_.mesh.vertices.size();
-    Frame frame{surface_, bvh_, maps, methods, shape, axes_of(kdop), {}, {}};
-    frame.computed_vertices.resize(vertex_count);
-    evaluate(surface_.mesh.vertices, surface_.weights, maps, frame.computed_vertices);
+    Frame frame{surface_, bvh_, maps, methods, shape, axes_of(kdop), {}, {}, displacements_, weights};
+    frame.computed_vertices = surface_.mesh.vertices;
+    if (!weights.empty())
+        displace(targets_, weights, frame.computed_vertices);
+    evaluate(frame.computed_vertices, surface_.weights, maps, frame.computed_vertices);
     frame.exact_vertices.resize(vertex_count);
     parallel_blocks(vertex_count, 512, [&](std::size_t first, std::size_t last) {
         pause_();
         const DirectedRounding upward;
         for (std::size_t v = first; v < last; ++v)
-            frame.exact_vertices[v] = deformed<Interval>(surface_.mesh.vertices[v], surface_.weights.of(v), maps);
+            frame.exact_vertices[v] = deformed(frame.rest<Interval>(v), surface_.weights.of(v), maps);
     });
 
     FrameVerdict out;

@@ -9,6 +9,7 @@
 
 #include "cinch/bounds.hpp"
 #include "cinch/bvh.hpp"
+#include "exact/displacements.hpp"
 
 namespace cinch::exact {
 
@@ -66,19 +67,25 @@ public:
     /// std::invalid_argument if the tree is no tree over the mesh's triangles, a rest vertex is not finite, or the
     /// weights are not dyadic and convex; std::runtime_error for a changed floating-point environment. `pause` is
     /// called every few BVs, here and in check(), on any thread: what it throws ends the call.
-    Verifier(const DeformableSurface& surface, const Bvh& bvh, void (*pause)() = nullptr);
+    /// `targets`: morph targets, of known displacements, that must stay as well; where they displace a BV there is no
+    /// statement on weight spaces, and all that a bound gives away is Loss::corner.
+    Verifier(const DeformableSurface& surface, const Bvh& bvh, void (*pause)() = nullptr,
+             std::span<const MorphTarget> targets = {});
 
     /// Why rest data fail, per BV; empty strings where they hold.
     const std::vector<std::string>& rest_data_faults() const { return faults_; }
 
     /// `supports` as refit() fills them for this frame. Results do not depend on the thread count.
+    /// `weights`: of the morph targets in this frame; empty where they displace nothing.
     FrameVerdict check(std::span<const AffineMap> maps, Methods methods, int kdop, std::span<const double> supports,
-                       RestShape shape = RestShape::aabb) const;
+                       RestShape shape = RestShape::aabb, std::span<const double> weights = {}) const;
 
 private:
     const DeformableSurface& surface_;
     const Bvh& bvh_;
     void (*pause_)();
+    std::span<const MorphTarget> targets_;
+    Displacements displacements_;
     std::vector<std::vector<std::uint32_t>> vertices_; // of each BV, each once
     std::vector<std::string> faults_;
 };

@@ -28,9 +28,10 @@ struct InputOptions {
     bool last_frames = false; ///< of a scene: the last `frames` one after the other, instead of evenly spread
     bool first_frame = false; ///< of a scene: the one at time 0 too
     std::uint64_t seed = 0;
-    std::string body;     ///< of a scene; empty: all of them, or the first where one is asked for
-    bool partial = false; ///< of a character: bound what is modelled, and say what is missing; else what is not
-                          ///< modelled is refused
+    std::string body;          ///< of a scene; empty: all of them, or the first where one is asked for
+    bool morph_frames = false; ///< of a character: frames with weights of morph targets are welcome, Input::targets
+    bool partial = false;      ///< of a character: bound what is modelled, and say what is missing; else what is not
+                               ///< modelled is refused
 };
 
 /// Lists of what a command can take many of, as people write them; empty where not given.
@@ -45,6 +46,7 @@ struct Input {
     DeformableSurface surface;
     std::vector<Vec3> nodes; ///< rest positions of the simulation nodes; empty where they have none, as joints
     Clip clip;
+    std::vector<MorphTarget> targets;    ///< where the clip displaces the surface by them
     bool simulated = false;              ///< by a scene
     bool simulation_nodes_fixed = false; ///< the input brings its own, instead of as many as asked for
     std::vector<std::string> report;     ///< one line each: what was loaded, and what was changed or left out

@@ -32,19 +32,29 @@ Character open_character(Input& input, const InputOptions& options, Morphs morph
 
 void load_character(Input& input, const InputOptions& options)
 {
-    const Character character = open_character(input, options, Morphs::missing);
-    const bool rest = character.animations.empty() && options.clip.empty();
-    const Character::Animation& animation =
-        rest ? character.rest : choose_clip(character.animations, options.clip, options.input);
-    input.missing = character.missing;
-    input.missing.insert(input.missing.end(), animation.missing.begin(), animation.missing.end());
+    const auto choose = [&](const Character& of) -> const Character::Animation& {
+        const bool rest = of.animations.empty() && options.clip.empty();
+        return rest ? of.rest : choose_clip(of.animations, options.clip, options.input);
+    };
+    const auto missing_of = [&](const Character& of) {
+        std::vector<std::string> missing = of.missing;
+        missing.insert(missing.end(), choose(of).missing.begin(), choose(of).missing.end());
+        return missing;
+    };
+    Character character = open_character(input, options, Morphs::missing);
+    input.missing = missing_of(character);
     const bool morphs = std::any_of(input.missing.begin(), input.missing.end(),
                                     [](const std::string& what) { return what.starts_with("morph targets"); });
+    if (morphs && options.morph_frames) { // with their targets vertices are others, where they are told apart by them
+        character = open_character(input, options, Morphs::read);
+        input.missing = missing_of(character);
+    }
+    const Character::Animation& animation = choose(character);
     if (!input.missing.empty() && !options.partial)
-        throw InputError::in_file(
-            options.input,
-            fmt::format("has {}; {}--partial bounds the rest, and every result says so", not_modelled(input.missing),
-                        morphs ? "'cinch bake', 'verify --times all' and 'view --swept' have them; " : ""));
+        throw InputError::in_file(options.input,
+                                  fmt::format("has {}; {}--partial bounds the rest, and every result says so",
+                                              not_modelled(input.missing),
+                                              morphs ? "'cinch bake', 'verify' and 'view' have them; " : ""));
     const Clip clip = sample(character, animation, options.fps > 0 ? options.fps : 30);
     constexpr std::size_t most_frames =
         1'000'000; // of which nobody waits for the end; a choice among more is no trouble
@@ -53,6 +63,10 @@ void load_character(Input& input, const InputOptions& options)
             options.input, fmt::format("clip '{}' has {} frames at this rate; --frames chooses some, --fps takes fewer",
                                        clip.name, grouped(clip.frame_count())));
     input.clip = evenly_spread(clip, options.frames);
+    if (clip.displaces()) {
+        input.targets = character.targets;
+        input.report.push_back(counted(character.targets.size(), "morph target", "morph targets"));
+    }
     if (character.animations.size() > 1 && options.clip.empty())
         input.report.push_back(
             fmt::format("{} clips; the first is used, --clip chooses another", character.animations.size()));

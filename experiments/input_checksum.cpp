@@ -18,6 +18,12 @@ std::uint64_t checksum_of(const Input& input, std::uint64_t sum)
     for (std::size_t f = 0; f < input.clip.frame_count(); ++f) {
         throw_if_interrupted();
         take(input.clip.frame(f));
+        if (input.clip.displaces())
+            take(input.clip.weights(f));
+    }
+    for (const MorphTarget& target : input.targets) {
+        take(target.vertex);
+        take(target.displacement);
     }
     return sum;
 }

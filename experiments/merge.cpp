@@ -11,6 +11,7 @@
 #include "experiments/study/study.hpp"
 #ifdef CINCH_EXACT
 #include "experiments/bake/bake.hpp"
+#include "experiments/bake/verify_times.hpp"
 #include "experiments/fuzz/fuzz_rows.hpp"
 #include "experiments/tightness/tightness.hpp"
 #include "experiments/verify_rows.hpp"
@@ -34,6 +35,8 @@ int merge_shards(const MergeOptions& options)
 #ifdef CINCH_EXACT
     if (all.campaign.command == "bake")
         return print_bake(all, options.output);
+    if (all.campaign.command == "verify --times all")
+        return print_verify_times(all, options.output);
     if (all.campaign.command == "verify")
         return print_verify(all, options.output, options.folder);
     if (all.campaign.command == "tightness")

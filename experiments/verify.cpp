@@ -51,22 +51,24 @@ namespace {
 // looser than eq12.
 class Ladder {
 public:
-    Ladder(const Bvh& bvh, const DeformableSurface& surface, const RefitOptions& options)
+    Ladder(const Bvh& bvh, const DeformableSurface& surface, const RefitOptions& options,
+           std::span<const MorphTarget> targets)
         : is_default_(options.methods == Method::best && options.rest_shape == RestShape::aabb),
           looser_(bvh.bvs.size() * static_cast<std::size_t>(options.kdop)), tighter_(looser_)
     {
         for (const Method method : ladder_methods) {
             RefitOptions rung = options;
             rung.methods = method;
-            rungs_.emplace_back(bvh, surface, rung);
+            rungs_.emplace_back(bvh, surface, rung, targets);
         }
     }
-    void check(std::span<const AffineMap> maps, std::span<const double> supports, LadderTotals& totals)
+    void check(std::span<const AffineMap> maps, std::span<const double> weights, std::span<const double> supports,
+               LadderTotals& totals)
     {
-        rungs_[0](maps, looser_);
+        rungs_[0](maps, weights, looser_);
         for (std::size_t r = 1; r < rungs_.size(); ++r) {
             throw_if_interrupted();
-            rungs_[r](maps, tighter_);
+            rungs_[r](maps, weights, tighter_);
             for (std::size_t i = 0; i < looser_.size(); ++i)
                 totals.broken += !(tighter_[i] <= looser_[i]);
             totals.compared += looser_.size();
@@ -99,8 +101,9 @@ private:
 void explain_last_frame(const Input& input, const Bvh& bvh, const VerifyOptions& options, std::size_t frame,
                         std::span<const double> supports, VerifyTotals& totals)
 {
-    if (totals.levels.empty() || options.sabotage != Sabotage::none || options.rest_shape == RestShape::obb)
-        return; // damaged data need not have a proof
+    if (totals.levels.empty() || options.sabotage != Sabotage::none || options.rest_shape == RestShape::obb ||
+        input.clip.displaces())
+        return; // damaged data need not have a proof; nor has a displaced BV one over weights
     const Clip::Frame maps = input.clip.frame(frame);
     auto place = [&](std::size_t bv, int direction) {
         return exact::OneBound{
@@ -144,8 +147,9 @@ Bvh damaged_bvh(const DeformableSurface& surface, const VerifyOptions& options)
 struct PreparedInput {
     PreparedInput(std::shared_ptr<const Inputs> shared, const Input& input, const VerifyOptions& options)
         : inputs(std::move(shared)), bvh(damaged_bvh(input.surface, options)),
-          verifier(input.surface, bvh, throw_if_interrupted), refit(bvh, input.surface, refit_options(options)),
-          ladder(bvh, input.surface, refit_options(options))
+          verifier(input.surface, bvh, throw_if_interrupted, input.targets),
+          refit(bvh, input.surface, refit_options(options), input.targets),
+          ladder(bvh, input.surface, refit_options(options), input.targets)
     {
     }
     std::shared_ptr<const Inputs> inputs;
@@ -177,14 +181,15 @@ VerifyTotals verify_frame(PreparedInput& prepared, const Input& input, const Ver
     VerifyTotals totals;
     supports.resize(bvh.bvs.size() * static_cast<std::size_t>(options.kdop));
     const Clip::Frame maps = input.clip.frame(f);
-    totals.unbounded_nodes = prepared.refit(maps, supports).unbounded_nodes;
+    const std::vector<double> weights = input.clip.weights(f);
+    totals.unbounded_nodes = prepared.refit(maps, weights, supports).unbounded_nodes;
     const exact::FrameVerdict verdict =
-        prepared.verifier.check(maps, options.methods, options.kdop, supports, options.rest_shape);
+        prepared.verifier.check(maps, options.methods, options.kdop, supports, options.rest_shape, weights);
     if (options.volume) {
         totals.volumes.resize(bvh.level.size() - 1);
         add_volumes(input.surface, bvh, maps, options.kdop, supports, totals.volumes);
     }
-    prepared.ladder.check(maps, supports, totals.ladder);
+    prepared.ladder.check(maps, weights, supports, totals.ladder);
     if (proof)
         proof(input.clip.time_s(f), maps, supports, verdict);
     add_levels(bvh, totals);
@@ -281,6 +286,8 @@ int verify(const VerifyOptions& given)
     VerifyOptions options = given;
     if (!options.input.morphs.empty())
         throw InputError("--morphs is of all times; with --times all");
+    options.input.morph_frames = options.update == VerifiedUpdate::refit && options.certificate.empty() &&
+                                 options.vipr.empty() && !options.volume;
     if (options.leaf == 0)
         options.leaf = options.update == VerifiedUpdate::refit ? 1 : 16;
     const auto start = std::chrono::steady_clock::now();

@@ -167,35 +167,6 @@ void print_bake(const Merged& all, const OutputOptions& options, const Provenanc
         fmt::print("{}\n", verdict_line(verdict_of(all)));
 }
 
-// Of all that moves a body. Throws Interrupted.
-std::uint64_t checksum_of(const TimedBody& body, std::uint64_t sum)
-{
-    sum = checksum_of(body.input, sum);
-    auto take = [&](const auto& all) {
-        sum = checksum({reinterpret_cast<const char*>(all.data()), all.size() * sizeof(all[0])}, sum);
-    };
-    for (const TimedClip& clip : body.clips) {
-        take(clip.motion.name);
-        take(clip.motion.keys);
-        if (!clip.animation)
-            continue;
-        for (const Curve& curve : clip.animation->curves) {
-            take(curve.time_s);
-            take(curve.value);
-        }
-        for (const WeightCurve& curve : clip.animation->morphs) {
-            take(curve.time_s);
-            take(curve.value);
-        }
-    }
-    for (const MorphTarget& target : body.targets()) {
-        take(target.vertex);
-        take(target.displacement);
-        take(target.half);
-    }
-    return sum;
-}
-
 // A body made ready, with which its clips are baked one by one.
 class Baker {
 public:

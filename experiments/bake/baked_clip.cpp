@@ -210,13 +210,6 @@ BakedFigures figures_of(const DeformableSurface& surface, const Bvh& bvh, std::s
     return out;
 }
 
-void displace(std::span<const MorphTarget> targets, std::span<const double> weights, std::vector<Vec3>& vertices)
-{
-    for (std::size_t i = 0; i < targets.size(); ++i)
-        for (std::size_t n = 0; n < targets[i].vertex.size(); ++n)
-            vertices[targets[i].vertex[n]] += weights[i] * targets[i].displacement[n];
-}
-
 std::size_t bvs_down_to(const Bvh& bvh, int level)
 {
     const std::size_t levels = bvh.level.size() - 1;

@@ -33,9 +33,6 @@ BakedFigures figures_of(const DeformableSurface& surface, const Bvh& bvh, std::s
                         IntervalRefitter& refit, const TimedMotion& motion, const BakeOptions& options,
                         const std::vector<BakedInterval>& baked);
 
-/// Adds Σ_i a_i d_i to rest vertices.
-void displace(std::span<const MorphTarget> targets, std::span<const double> weights, std::vector<Vec3>& vertices);
-
 /// Of a level and those above it; the level of a BV, given where levels begin (Bvh::level).
 std::size_t bvs_down_to(const Bvh& bvh, int level);
 std::size_t level_of(std::span<const std::uint32_t> levels, std::size_t bv);

@@ -16,7 +16,12 @@ Input with_frames(const TimedBody& body, std::size_t frames)
         return i + 1 == count ? last : first + (last - first) * static_cast<double>(i) / static_cast<double>(count - 1);
     };
     Input out = body.input;
-    out.clip = {motion.name, count, time_s, [at = motion.at, time_s](std::size_t i) { return at(time_s(i)); }};
+    std::function<std::vector<double>(std::size_t)> weights;
+    if (motion.weights) {
+        weights = [of = motion.weights, time_s](std::size_t i) { return of(time_s(i)); };
+        out.targets.assign(body.targets().begin(), body.targets().end());
+    }
+    out.clip = {motion.name, count, time_s, [at = motion.at, time_s](std::size_t i) { return at(time_s(i)); }, weights};
     return out;
 }
 
@@ -31,17 +36,6 @@ Inputs with_all_times(InputOptions what, std::size_t frames, std::vector<TimedBo
         out.bodies.push_back(with_frames(body, frames));
         out.report.insert(out.report.end(), body.input.report.begin(), body.input.report.end());
     }
-    return out;
-}
-
-std::vector<Vec3> places_at(const TimedBody& body, double t_s)
-{
-    const TimedMotion& motion = body.clips.front().motion;
-    const DeformableSurface& surface = body.input.surface;
-    std::vector<Vec3> rest = surface.mesh.vertices, out(rest.size());
-    if (motion.weights)
-        displace(body.targets(), motion.weights(t_s), rest);
-    evaluate(rest, surface.weights, motion.at(t_s), out);
     return out;
 }
 

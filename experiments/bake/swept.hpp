@@ -12,9 +12,6 @@ Input with_frames(const TimedBody& body, std::size_t frames);
 /// and as so many frames of them.
 Inputs with_all_times(InputOptions what, std::size_t frames, std::vector<TimedBody>& timed);
 
-/// Where the body's vertices are at a time of its first clip, morph targets added.
-std::vector<Vec3> places_at(const TimedBody& body, double t_s);
-
 /// Of each frame of `input` the bounds of the interval around it, supports[(f·BVs + bv)·k + d], each for all times of
 /// the interval (bake_clip).
 std::vector<double> swept_bounds(const TimedBody& body, const Input& input, const Bvh& bvh, int kdop);

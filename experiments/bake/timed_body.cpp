@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "experiments/input_checksum.hpp"
 #include "experiments/report/interrupt.hpp"
 #include "experiments/shipped.hpp"
 #include "toolkit/surface/character.hpp"
@@ -110,6 +111,34 @@ std::vector<TimedBody> load_timed(const InputOptions& options, const Engine& eng
         body.clips.push_back({character_motion(character, *animation, body.input.surface, engine), animation});
     }
     return bodies;
+}
+
+std::uint64_t checksum_of(const TimedBody& body, std::uint64_t sum)
+{
+    sum = checksum_of(body.input, sum);
+    auto take = [&](const auto& all) {
+        sum = checksum({reinterpret_cast<const char*>(all.data()), all.size() * sizeof(all[0])}, sum);
+    };
+    for (const TimedClip& clip : body.clips) {
+        take(clip.motion.name);
+        take(clip.motion.keys);
+        if (!clip.animation)
+            continue;
+        for (const Curve& curve : clip.animation->curves) {
+            take(curve.time_s);
+            take(curve.value);
+        }
+        for (const WeightCurve& curve : clip.animation->morphs) {
+            take(curve.time_s);
+            take(curve.value);
+        }
+    }
+    for (const MorphTarget& target : body.targets()) {
+        take(target.vertex);
+        take(target.displacement);
+        take(target.half);
+    }
+    return sum;
 }
 
 TimedMotion watched(TimedMotion motion, TimeSabotage how)

@@ -40,6 +40,9 @@ struct TimedBody {
 /// InputError, as load_input does.
 std::vector<TimedBody> load_timed(const InputOptions& options, const Engine& engine = {});
 
+/// Of all that moves a body, as checksum_of an Input. Throws Interrupted.
+std::uint64_t checksum_of(const TimedBody& body, std::uint64_t so_far);
+
 /// The motion that ends when it is asked to; and says what a wrong formula would say, for tests of the exact side.
 TimedMotion watched(TimedMotion motion, TimeSabotage how);
 

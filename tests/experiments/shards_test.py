@@ -148,6 +148,7 @@ with tempfile.TemporaryDirectory() as place:
         assert box["min"] == box["max"] == [None] * 3, box
     baked = ["bake", many_clips(place, 9), "--prove", "--level", -1]
     compare("bake", baked, [("--json",), ()], kills=0)
+    compare("verify of all times", ["verify", baked[1], "--times", "all"], [("--json",), ()], kills=0)
     whole = run(*baked, "--json").stdout
     assert records(whole) == records(run(*baked, "--json", "--out", place + "/rows").stdout)
     assert len({row["clip"] for row in records(whole)}) == 9

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cinch/deform.hpp"
 
+#include <stdexcept>
+
 #include "cinch/environment.hpp"
 #include "toolkit/deform/parallel.hpp"
 
@@ -17,6 +19,16 @@ Vec3 evaluate_vertex(const Vec3& rest, Weights::Row row, std::span<const AffineM
             sum[r] = sum[r] + w * (((m[r][0] * x + m[r][1] * y) + m[r][2] * z) + m[r][3]);
     }
     return {sum[0], sum[1], sum[2]};
+}
+
+void displace(std::span<const MorphTarget> targets, std::span<const double> weights, std::span<Vec3> rest)
+{
+    if (weights.size() != targets.size())
+        throw std::invalid_argument("displace: one weight per morph target is needed");
+    require_default_arithmetic();
+    for (std::size_t i = 0; i < targets.size(); ++i)
+        for (std::size_t n = 0; n < targets[i].vertex.size(); ++n)
+            rest[targets[i].vertex[n]] += weights[i] * targets[i].displacement[n];
 }
 
 void evaluate(std::span<const Vec3> rest, const Weights& weights, std::span<const AffineMap> maps, std::span<Vec3> out)

@@ -9,8 +9,9 @@
 namespace cinch {
 
 Clip::Clip(std::string clip_name, std::size_t count, std::function<double(std::size_t)> time_s,
-           std::function<Frame(std::size_t)> frame)
-    : name(std::move(clip_name)), count_(count), time_s_(std::move(time_s)), frame_(std::move(frame))
+           std::function<Frame(std::size_t)> frame, std::function<std::vector<double>(std::size_t)> weights)
+    : name(std::move(clip_name)), count_(count), time_s_(std::move(time_s)), frame_(std::move(frame)),
+      weights_(std::move(weights))
 {
 }
 
@@ -43,6 +44,13 @@ Clip::Frame Clip::frame(std::size_t i) const
     return frame_(checked(i));
 }
 
+std::vector<double> Clip::weights(std::size_t i) const
+{
+    require_default_arithmetic();
+    checked(i);
+    return weights_ ? weights_(i) : std::vector<double>();
+}
+
 Clip evenly_spread(const Clip& clip, std::size_t frames)
 {
     const std::size_t all = clip.frame_count();
@@ -51,8 +59,11 @@ Clip evenly_spread(const Clip& clip, std::size_t frames)
     auto chosen = [all, frames](std::size_t i) {
         return frames == 1 ? all - 1 : (i * (all - 1) + (frames - 1) / 2) / (frames - 1);
     };
+    std::function<std::vector<double>(std::size_t)> weights;
+    if (clip.displaces())
+        weights = [clip, chosen](std::size_t i) { return clip.weights(chosen(i)); };
     return {clip.name, frames, [clip, chosen](std::size_t i) { return clip.time_s(chosen(i)); },
-            [clip, chosen](std::size_t i) { return clip.frame(chosen(i)); }};
+            [clip, chosen](std::size_t i) { return clip.frame(chosen(i)); }, weights};
 }
 
 } // namespace cinch

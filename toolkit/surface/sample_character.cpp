@@ -91,11 +91,21 @@ struct Motion {
     std::vector<Joint> joints;
     std::vector<Curve> curves;
     double first, last;
-    std::size_t steps; // from the first frame to the last
+    std::size_t steps;              // from the first frame to the last
+    std::vector<double> still = {}; // weights of morph targets that no curve sets; none where nothing is displaced
+    std::vector<Curve> morphs = {}; // of one target each, Curve::bone
 
     double time_s(std::size_t i) const
     {
         return i == steps ? last : first + (last - first) * static_cast<double>(i) / static_cast<double>(steps);
+    }
+
+    std::vector<double> weights(double t) const
+    {
+        std::vector<double> out = still;
+        for (const Curve& curve : morphs)
+            out[curve.bone] = evaluate(curve, t)[0];
+        return out;
     }
 
     Clip::Frame frame(double t) const
@@ -133,6 +143,22 @@ struct Motion {
 };
 
 } // namespace
+
+// Weights are sampled like translations.
+static std::vector<Curve> curves_of_targets(const std::vector<WeightCurve>& together)
+{
+    std::vector<Curve> out;
+    for (const WeightCurve& of : together)
+        for (std::uint32_t i = 0; i < of.count; ++i) {
+            Curve& curve = out.emplace_back();
+            curve.bone = of.first_target + i;
+            curve.interpolation = of.interpolation;
+            curve.time_s = of.time_s;
+            for (std::size_t v = i; v < of.value.size(); v += of.count)
+                curve.value.push_back({of.value[v], 0, 0, 0});
+        }
+    return out;
+}
 
 bool moves_targets(const Character& character, const Character::Animation& animation)
 {
@@ -176,10 +202,6 @@ Clip sample(const Character& character, const Character::Animation& animation, d
     require_default_arithmetic();
     if (!animation.fault.empty())
         throw InputError(animation.fault);
-    if (moves_targets(character, animation))
-        throw InputError::in_file(character.file, "clip '" + animation.name +
-                                                      "' has morph targets with weights that are not 0, which its "
-                                                      "frames would lack");
     const double length = animation.last_s - animation.first_s;
     constexpr double most_frames = 1e12;
     if (!(length * fps < most_frames - 1))
@@ -187,11 +209,19 @@ Clip sample(const Character& character, const Character::Animation& animation, d
                                   "clip '" + animation.name + "' lasts " + std::to_string(length) +
                                       " s, a million million frames at this rate; lower the frames per second");
     const auto steps = static_cast<std::size_t>(std::max(length > 0 ? 1.0 : 0.0, std::round(length * fps)));
-    auto motion =
-        std::make_shared<const Motion>(Motion{character.file, animation.name, character.bones, character.joints,
-                                              animation.curves, animation.first_s, animation.last_s, steps});
+    Motion of{character.file,   animation.name,    character.bones,  character.joints,
+              animation.curves, animation.first_s, animation.last_s, steps};
+    const bool displaced = moves_targets(character, animation);
+    if (displaced) {
+        of.still = character.target_weights;
+        of.morphs = curves_of_targets(animation.morphs);
+    }
+    const auto motion = std::make_shared<const Motion>(std::move(of));
+    std::function<std::vector<double>(std::size_t)> weights;
+    if (displaced)
+        weights = [motion](std::size_t i) { return motion->weights(motion->time_s(i)); };
     return {animation.name, steps + 1, [motion](std::size_t i) { return motion->time_s(i); },
-            [motion](std::size_t i) { return motion->frame(motion->time_s(i)); }};
+            [motion](std::size_t i) { return motion->frame(motion->time_s(i)); }, weights};
 }
 
 std::string not_modelled(const std::vector<std::string>& missing)

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "toolkit/bounds/greatest_mean.hpp"
 #include "toolkit/bounds/rounding.hpp"
 
 namespace cinch {

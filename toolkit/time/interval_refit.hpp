@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cinch/refit.hpp"
-#include "toolkit/time/morph_boxes.hpp"
+#include "toolkit/hierarchy/morph_boxes.hpp"
 #include "toolkit/time/motion_interval.hpp"
 
 namespace cinch {
@@ -52,27 +52,5 @@ void merge_children(const Bvh& bvh, std::size_t k, std::span<double> supports);
 /// The greatest value of the parabola above, with what the path's length L says; rounded up. Infinite where an input is
 /// or is no number.
 double greatest_between(double first, double last, double bump, double path);
-
-/// At least max Σ w_j c_j over the BV's weight space, c_j ≥ 0 (Eq. 12, or the greatest c_j); `of(j)` gives that of
-/// the j-th of the BV's simulation nodes.
-template <class F> double greatest_mean(const RestBv& bv, F&& of)
-{
-    double most = 0, second = 0;
-    for (std::size_t j = 0; j < bv.node.size(); ++j) {
-        const double c = of(j);
-        second = std::max(second, std::min(c, most));
-        most = std::max(most, c);
-    }
-    if (!(most < HUGE_VAL) || second == most)
-        return most;
-    double sum = second; // D(λ) at the second-greatest
-    for (std::size_t j = 0; j < bv.node.size(); ++j) {
-        const double above = of(j) - second;
-        sum += bv.space.l[j] * above + (bv.space.h[j] - bv.space.l[j]) * std::max(above, 0.0);
-    }
-    // |terms| sum to at most 3 most, each passes n + 3 roundings.
-    const double rounding = (static_cast<double>(bv.node.size()) + 8) * 0x1p-51 * most;
-    return std::min(most, sum + rounding);
-}
 
 } // namespace cinch

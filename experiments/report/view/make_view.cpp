@@ -2,12 +2,13 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "cinch/bounds.hpp"
-#include "cinch/collider.hpp"
 #include "cinch/deform.hpp"
+#include "cinch/refit.hpp"
 #include "cinch/surface.hpp"
 #include "experiments/bake/swept.hpp"
 #include "experiments/input.hpp"
@@ -15,6 +16,7 @@
 #include "experiments/report/or_leave.hpp"
 #include "experiments/report/progress.hpp"
 #include "experiments/report/view.hpp"
+#include "experiments/report/view/contacts.hpp"
 #include "experiments/report/view/grid.hpp"
 #include "experiments/report/view/pack.hpp"
 #include "experiments/simulation/find_scene.hpp"
@@ -28,38 +30,9 @@ using Json = nlohmann::ordered_json;
 
 const std::string all_times = "all times"; // beside the names of methods
 
-// A body as the view draws it: triangles in the order of the BVH, so that a BV is a range of them, and the vertices
-// that they use in the order in which they do.
-struct DrawnBody {
-    explicit DrawnBody(const Input& body) : input(body), bvh(build_bvh(body.surface, ClusterSize{16, 16}))
-    {
-        constexpr std::uint32_t none = ~0u;
-        const TriangleMesh& mesh = body.surface.mesh;
-        std::vector<std::uint32_t> place(mesh.vertices.size(), none);
-        place_of_triangle.resize(mesh.triangles.size());
-        for (std::uint32_t t = 0; t < bvh.triangle.size(); ++t) {
-            place_of_triangle[bvh.triangle[t]] = t;
-            for (const std::uint32_t v : mesh.triangles[bvh.triangle[t]]) {
-                if (place[v] == none) {
-                    place[v] = static_cast<std::uint32_t>(vertex.size());
-                    vertex.push_back(v);
-                }
-                corner.push_back(place[v]);
-            }
-        }
-    }
-    std::uint32_t bvs(std::size_t levels) const { return bvh.level[std::min(levels, bvh.level.size() - 1)]; }
-
-    const Input& input;
-    Bvh bvh;
-    std::vector<std::uint32_t> vertex;            ///< of the mesh
-    std::vector<std::uint32_t> corner;            ///< 3 per triangle, in `vertex`
-    std::vector<std::uint32_t> place_of_triangle; ///< of the mesh, in the BVH's order
-};
-
 // Positions of all drawn vertices of all bodies, frame after frame; refuses those that are not finite.
-std::vector<std::vector<Vec3>> evaluate(const std::vector<DrawnBody>& bodies, const std::vector<TimedBody>& timed,
-                                        std::size_t frames, const std::string& scene)
+std::vector<std::vector<Vec3>> evaluate(const std::vector<DrawnBody>& bodies, std::size_t frames,
+                                        const std::string& scene)
 {
     std::vector<std::vector<Vec3>> all(frames);
     for (std::size_t b = 0; b < bodies.size(); ++b) {
@@ -68,10 +41,13 @@ std::vector<std::vector<Vec3>> evaluate(const std::vector<DrawnBody>& bodies, co
         std::vector<Vec3> positions(body.input.surface.mesh.vertices.size());
         for (std::size_t f = 0; f < frames; ++f) {
             throw_if_interrupted();
-            if (timed.empty())
+            if (const std::vector<double> weights = body.input.clip.weights(f); weights.empty()) {
                 evaluator(body.input.clip.frame(f), positions);
-            else
-                positions = places_at(timed[b], body.input.clip.time_s(f));
+            } else {
+                positions = body.input.surface.mesh.vertices;
+                displace(body.input.targets, weights, positions);
+                cinch::evaluate(positions, body.input.surface.weights, body.input.clip.frame(f), positions);
+            }
             for (const std::uint32_t v : body.vertex) {
                 if (!positions[v].allFinite())
                     throw InputError::in_file(scene,
@@ -193,15 +169,23 @@ std::vector<std::int32_t> bounds_by(Method method, const ViewRequest& request, c
     options.kdop = request.kdop;
     for (std::uint32_t b = 0; b < bodies.size(); ++b) {
         throw_if_interrupted();
-        Bounder bounder(bodies[b].bvh, bodies[b].input.surface, options, Bounder::Leaves::included);
-        std::vector<double> supports(bodies[b].bvs(bvs.level.size() - 1) * k);
+        const Input& input = bodies[b].input;
+        std::optional<Refitter> displaced;
+        if (input.clip.displaces())
+            displaced.emplace(bodies[b].bvh, input.surface, options, input.targets);
+        Bounder bounder(bodies[b].bvh, input.surface, options, Bounder::Leaves::included);
+        std::vector<double> supports((displaced ? bodies[b].bvh.bvs.size() : bodies[b].bvs(bvs.level.size() - 1)) * k);
         for (std::size_t f = 0; f < frames; ++f) {
             throw_if_interrupted();
-            const Clip::Frame maps = bodies[b].input.clip.frame(f);
-            bounder.begin(maps);
-            parallel_blocks(supports.size() / k, 1, [&](std::size_t first, std::size_t last) {
-                bounder.bound(first, last, std::span(supports).subspan(first * k, (last - first) * k));
-            });
+            const Clip::Frame maps = input.clip.frame(f);
+            if (displaced) {
+                (*displaced)(maps, input.clip.weights(f), supports);
+            } else {
+                bounder.begin(maps);
+                parallel_blocks(supports.size() / k, 1, [&](std::size_t first, std::size_t last) {
+                    bounder.bound(first, last, std::span(supports).subspan(first * k, (last - first) * k));
+                });
+            }
             for (std::size_t i = 0; i < bvs.bv.size(); ++i)
                 for (std::size_t d = 0; bvs.body[i] == b && d < k; ++d)
                     out[(f * bvs.bv.size() + i) * k + d] =
@@ -226,51 +210,6 @@ std::vector<std::int32_t> swept_on_grid(const ViewRequest& request, const std::v
                 for (std::size_t d = 0; bvs.body[i] == b && d < k; ++d)
                     out[(f * bvs.bv.size() + i) * k + d] = grid.support(
                         axes[d / 2], d % 2 == 1, supports[(f * bodies[b].bvh.bvs.size() + bvs.bv[i]) * k + d]);
-    }
-    return out;
-}
-
-// The triangles of each frame that intersect one of another body, ascending, frames one after the other; and how many
-// pairs.
-struct Contacts {
-    std::vector<std::int32_t> triangle, triangles_in_frame, pairs_in_frame;
-};
-
-Contacts contacts(const std::vector<DrawnBody>& bodies, std::size_t frames)
-{
-    Contacts out;
-    if (bodies.size() < 2)
-        return out;
-    Collider collider{LazyOptions{}};
-    std::vector<std::uint32_t> base{0};
-    for (const DrawnBody& body : bodies) {
-        throw_if_interrupted();
-        collider.add(body.bvh, body.input.surface);
-        base.push_back(base.back() + static_cast<std::uint32_t>(body.bvh.triangle.size()));
-    }
-    std::vector<BodyFrame> now(bodies.size());
-    std::vector<Clip::Frame> maps(bodies.size());
-    for (std::size_t f = 0; f < frames; ++f) {
-        throw_if_interrupted();
-        for (std::size_t b = 0; b < bodies.size(); ++b) {
-            maps[b] = bodies[b].input.clip.frame(f);
-            now[b] = {maps[b]};
-        }
-        collider.update(now);
-        const std::vector<TrianglePair> pairs = collider.pairs();
-        std::vector<std::int32_t> here;
-        auto add = [&](std::uint32_t body, std::uint32_t triangle) {
-            here.push_back(static_cast<std::int32_t>(base[body] + bodies[body].place_of_triangle[triangle]));
-        };
-        for (const TrianglePair& p : pairs) {
-            add(p.body_a, p.triangle_a);
-            add(p.body_b, p.triangle_b);
-        }
-        std::sort(here.begin(), here.end());
-        here.erase(std::unique(here.begin(), here.end()), here.end());
-        out.triangle.insert(out.triangle.end(), here.begin(), here.end());
-        out.triangles_in_frame.push_back(static_cast<std::int32_t>(here.size()));
-        out.pairs_in_frame.push_back(static_cast<std::int32_t>(pairs.size()));
     }
     return out;
 }
@@ -313,13 +252,11 @@ nlohmann::ordered_json make_view(const ViewRequest& request)
     what.weights = request.weights;
     what.transforms = request.transforms;
     what.clip = request.clip;
+    what.morph_frames = true;
     std::vector<TimedBody> timed;
     const Inputs inputs =
         request.swept ? with_all_times(what, request.frames, timed) : or_leave([what] { return load_inputs(what); });
-    const bool morphs = std::any_of(timed.begin(), timed.end(),
-                                    [](const TimedBody& body) { return bool(body.clips.front().motion.weights); });
-    // Bounds of single frames know of no morph targets.
-    const std::vector<Method> methods = morphs ? std::vector<Method>() : request.methods;
+    const std::vector<Method>& methods = request.methods;
 
     std::vector<DrawnBody> bodies;
     bodies.reserve(inputs.bodies.size());
@@ -357,7 +294,7 @@ nlohmann::ordered_json make_view(const ViewRequest& request)
     }
     view["bvs"] = {{"level", bvs.level}, {"first", bvs.first}, {"count", bvs.count}};
     {
-        const auto positions = evaluate(bodies, timed, frames, request.scene);
+        const auto positions = evaluate(bodies, frames, request.scene);
         const Grid grid = grid_of(positions, request.bits);
         view["step"] = grid.step;
         view["origin"] = grid.origin;

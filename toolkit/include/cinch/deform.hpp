@@ -21,8 +21,9 @@ public:
     Clip() = default;
     /// Frames that are computed. `time_s` and `frame` are called with i < count, by any thread, and always answer the
     /// same.
+    /// `weights`, where morph targets displace vertices: theirs.
     Clip(std::string clip_name, std::size_t count, std::function<double(std::size_t)> time_s,
-         std::function<Frame(std::size_t)> frame);
+         std::function<Frame(std::size_t)> frame, std::function<std::vector<double>(std::size_t)> weights = {});
     /// Frames that are there already, one per time. Throws std::invalid_argument where their numbers differ.
     Clip(std::string clip_name, std::vector<double> time_s, std::vector<Frame> frames);
 
@@ -32,6 +33,10 @@ public:
     double time_s(std::size_t i) const;
     /// The same for the maps. Throws InputError where a computed frame overflows.
     Frame frame(std::size_t i) const;
+    /// The same for the weights of all morph targets, finite; empty where none of them displaces anything in the clip.
+    std::vector<double> weights(std::size_t i) const;
+    /// Whether morph targets displace vertices.
+    bool displaces() const { return bool(weights_); }
 
     std::string name; ///< as files call it
 
@@ -41,6 +46,7 @@ private:
     std::size_t count_ = 0;
     std::function<double(std::size_t)> time_s_;
     std::function<Frame(std::size_t)> frame_;
+    std::function<std::vector<double>(std::size_t)> weights_;
 };
 
 /// `frames` of the clip, evenly spread, the last one included; 0, and as many as it has or more, keep all. The clip has
@@ -52,6 +58,11 @@ Clip evenly_spread(const Clip& clip, std::size_t frames);
 /// operations), every caller gets the same bits, and the bounds are proven to contain it. Non-finite maps give
 /// non-finite coordinates.
 Vec3 evaluate_vertex(const Vec3& rest, Weights::Row row, std::span<const AffineMap> maps) noexcept;
+
+/// Adds Σ_i a_i d_i to rest vertices, in double, in the order of the targets; the bounds are proven to contain what
+/// evaluate_vertex makes of them. Where displacements are boxes (MorphTarget::half), by their middles. Throws
+/// std::invalid_argument unless there is one weight per target.
+void displace(std::span<const MorphTarget> targets, std::span<const double> weights, std::span<Vec3> rest);
 
 /// All vertices, in parallel; the same bits for every thread count. `out` has one place per vertex. Throws
 /// std::runtime_error for a changed floating-point environment (environment.hpp).

@@ -161,9 +161,9 @@ bool is_character_file(const std::filesystem::path& path);
 DeformableSurface surface_of(const Character& character, WeightReport* report = nullptr);
 
 /// Joint matrices (joint world × inverse bind) at evenly spaced times from the first key to the last, both included,
-/// as near to `fps` per second as that allows. The clip has a copy of what it needs. Throws InputError for a fault of
-/// the animation, for morph targets that were read and have weights that are not 0, and for 10¹² frames or more; frames
-/// that overflow throw when they are made.
+/// as near to `fps` per second as that allows; and the weights of morph targets that were read, where one of them
+/// displaces anything in the animation (Clip::weights). The clip has a copy of what it needs. Throws InputError for a
+/// fault of the animation, and for 10¹² frames or more; frames that overflow throw when they are made.
 Clip sample(const Character& character, const Character::Animation& animation, double fps);
 
 /// The rest pose as a clip of one frame.

@@ -35,9 +35,12 @@ struct RefitReport {
 class Refitter {
 public:
     /// Prepares the rest data that the methods need. Throws std::invalid_argument for a k that is none.
-    Refitter(const Bvh& bvh, const DeformableSurface& surface, const RefitOptions& options);
-    Refitter(const Bvh&&, const DeformableSurface&, const RefitOptions&) = delete; ///< both are referred to
-    Refitter(const Bvh&, const DeformableSurface&&, const RefitOptions&) = delete;
+    /// `targets`: morph targets whose weights frames have; they must stay as they are, and alive, too.
+    Refitter(const Bvh& bvh, const DeformableSurface& surface, const RefitOptions& options,
+             std::span<const MorphTarget> targets = {});
+    Refitter(const Bvh&&, const DeformableSurface&, const RefitOptions&,
+             std::span<const MorphTarget> = {}) = delete; ///< both are referred to
+    Refitter(const Bvh&, const DeformableSurface&&, const RefitOptions&, std::span<const MorphTarget> = {}) = delete;
     ~Refitter();
     /// What was moved from can only be destroyed.
     Refitter(Refitter&&) noexcept;
@@ -48,6 +51,12 @@ public:
     /// rounding at most, should the grid cell of the median node change. Throws std::invalid_argument for sizes that do
     /// not fit and std::runtime_error for a changed floating-point environment.
     RefitReport operator()(std::span<const AffineMap> maps, std::span<double> supports);
+
+    /// The same of the surface displaced by its morph targets with these weights (Clip::weights), one per target or
+    /// none: to what bounds it undisplaced is added what the boxes of each BV's displacements reach, O(targets + nodes)
+    /// per BV. Weights that are not finite make the supports of the BVs infinite that their targets displace.
+    RefitReport operator()(std::span<const AffineMap> maps, std::span<const double> weights,
+                           std::span<double> supports);
 
     /// Of the rest data that the kernels stream.
     std::size_t bytes() const;

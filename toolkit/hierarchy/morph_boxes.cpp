@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "toolkit/time/morph_boxes.hpp"
+#include "toolkit/hierarchy/morph_boxes.hpp"
 
 #include <algorithm>
 #include <cmath>
 
+#include "toolkit/bounds/greatest_mean.hpp"
 #include "toolkit/bounds/rounding.hpp"
-#include "toolkit/time/interval_refit.hpp"
 
 namespace cinch {
 namespace {
@@ -127,6 +127,47 @@ void MorphBoxes::add(std::span<const Term> terms, int kdop, std::span<double> su
             const double mean = // weights sum to 1
                 finite ? least + greatest_mean(bv, [&](std::size_t j) { return reach[j * k + d] - least; }) : infinite;
             supports[i * k + d] = succ(supports[i * k + d] + mean);
+        }
+    }
+}
+
+void MorphBoxes::add_error(const Term& term, double farthest, int kdop, std::span<double> supports) const
+{
+    const auto k = static_cast<std::size_t>(kdop);
+    const auto axes = axes_of(kdop);
+    std::vector<double> row_sum; // ‖A_j‖∞
+    row_sum.reserve(term.maps.size());
+    for (const AffineMap& map : term.maps) {
+        double most = 0;
+        for (const auto& row : map.m)
+            most = std::max(most, (std::abs(row[0]) + std::abs(row[1])) + std::abs(row[2]));
+        row_sum.push_back(most);
+    }
+    constexpr double least = 0x1p-1022; // products that underflow are off by less
+    for (std::size_t i = 0; i < bvh_.bvs.size(); ++i) {
+        double displaced = 0;
+        bool any = false;
+        for (std::uint32_t n = row_[i]; n < row_[i + 1]; ++n)
+            if (const double a = std::abs(term.weight[target_[n]]); a != 0) {
+                displaced += a * (centre_[n].cwiseAbs() + half_[n]).maxCoeff();
+                any = true;
+            }
+        if (!any)
+            continue;
+        const RestBv bv = bvh_.rest(i);
+        double size = 0;
+        for (const std::uint32_t j : bv.node)
+            size = std::max(size, row_sum[j]);
+        const double factor =
+            8 * (static_cast<double>(count(i)) + static_cast<double>(bv.node.size()) + 16) * unit_roundoff;
+        const double coordinate = factor * (size * (farthest + displaced + least) + least);
+        for (std::size_t d = 0; d < k; ++d) {
+            const Axis& axis = axes[d / 2];
+            const double own = (std::abs(axis[0]) + std::abs(axis[1]) + std::abs(axis[2])) * coordinate;
+            double& support = supports[i * k + d];
+            support = succ(support + own);
+            if (!(support < infinite))
+                support = infinite;
         }
     }
 }

@@ -22,6 +22,15 @@ public:
     /// every c_j and the mean are off by at most (m + n + 16) u ‖γ‖ times 4 Σ_terms ‖A_j‖ Σ_i |a_i| max ‖d_i‖.
     void add(std::span<const Term> terms, int kdop, std::span<double> supports) const;
 
+    /// Adds to the supports of the BVs that one such term displaces, A_j the linear parts of the frame's own maps, what
+    /// is rounded where frames have morph targets: with E = Σ_i |a_i| max ‖d_i‖∞ and X = `farthest` ≥ every ‖v⁰‖∞,
+    ///   add()                                                          4 (m + n + 16) u ‖γ‖₁ ‖A_j‖∞ E,
+    ///   displace(): m products and sums per coordinate, pushed by A_j  (m + 2) u ‖γ‖₁ ‖A_j‖∞ (X + E),
+    ///   evaluate_vertex() of what is displaced, beyond what it         (n + 9) u ‖γ‖₁ ‖A_j‖∞ E,
+    ///   rounds of v⁰, which the bounds have already
+    /// together at most 6 (m + n + 16) u ‖γ‖₁ max ‖A_j‖∞ (X + E); 8 are taken, for the rounding of this sum itself.
+    void add_error(const Term& term, double farthest, int kdop, std::span<double> supports) const;
+
     /// How many targets displace a BV.
     std::size_t count(std::size_t bv) const { return row_[bv + 1] - row_[bv]; }
 
