@@ -51,6 +51,15 @@ Verifier::Verifier(const DeformableSurface& surface, const Bvh& bvh, void (*paus
     });
 }
 
+std::array<Enclosure, 3> Verifier::place(std::uint32_t vertex, std::span<const AffineMap> maps,
+                                         std::span<const double> weights) const
+{
+    const Frame frame{surface_, bvh_, maps, Method::vertices, RestShape::aabb, {}, {}, {}, displacements_, weights};
+    const DirectedRounding upward;
+    const Point<Interval> x = deformed(frame.rest<Interval>(vertex), surface_.weights.of(vertex), maps);
+    return {{{x[0].inf(), x[0].sup()}, {x[1].inf(), x[1].sup()}, {x[2].inf(), x[2].sup()}}};
+}
+
 FrameVerdict Verifier::check(std::span<const AffineMap> maps, Methods methods, int kdop,
                              std::span<const double> supports, RestShape shape, std::span<const double> weights) const
 {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <span>
@@ -10,6 +11,7 @@
 #include "cinch/bounds.hpp"
 #include "cinch/bvh.hpp"
 #include "exact/displacements.hpp"
+#include "exact/motion_enclosure.hpp"
 
 namespace cinch::exact {
 
@@ -79,6 +81,10 @@ public:
     /// `weights`: of the morph targets in this frame; empty where they displace nothing.
     FrameVerdict check(std::span<const AffineMap> maps, Methods methods, int kdop, std::span<const double> supports,
                        RestShape shape = RestShape::aabb, std::span<const double> weights = {}) const;
+
+    /// Where a frame's maps and weights put a vertex, enclosed.
+    std::array<Enclosure, 3> place(std::uint32_t vertex, std::span<const AffineMap> maps,
+                                   std::span<const double> weights) const;
 
 private:
     const DeformableSurface& surface_;

@@ -215,6 +215,8 @@ void add_cost(CLI::App& app, Run& run)
         of_simulation->output = options->output;
         of_simulation->seconds = options->seconds;
         run = [options, of_simulation] {
+            if (!of_simulation->scene.empty() && !options->shards.folder.empty())
+                throw InputError("--out is of methods and arithmetics; not with --simulation");
             return of_simulation->scene.empty() ? cost(*options) : cost_simulation(*of_simulation);
         };
     });
@@ -240,6 +242,7 @@ void add_cost(CLI::App& app, Run& run)
     command.add_flag_callback(
         "--this-input-only", [&o] { o.all_scenes = false; },
         wrapped("the gap of the dual evaluation for the input alone, not for every shipped shape"));
+    add_shards(command, o.shards);
     add_output(command, o.output);
     command.footer(R"(Examples:
   cinch cost                             the brain; about a minute

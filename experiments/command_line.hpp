@@ -27,6 +27,7 @@ void add_merge(CLI::App& app, Run& run);
 void add_schema(CLI::App& app, Run& run);
 #ifdef CINCH_EXACT
 void add_verify(CLI::App& app, Run& run);
+void add_audit(CLI::App& app, Run& run);
 void add_bake(CLI::App& app, Run& run);
 void add_tightness(CLI::App& app, Run& run);
 void add_cost(CLI::App& app, Run& run);

@@ -10,8 +10,10 @@
 #include "experiments/scaling/scaling.hpp"
 #include "experiments/study/study.hpp"
 #ifdef CINCH_EXACT
+#include "experiments/audit/audit.hpp"
 #include "experiments/bake/bake.hpp"
 #include "experiments/bake/verify_times.hpp"
+#include "experiments/cost/cost.hpp"
 #include "experiments/fuzz/fuzz_rows.hpp"
 #include "experiments/tightness/tightness.hpp"
 #include "experiments/verify_rows.hpp"
@@ -33,12 +35,16 @@ int merge_shards(const MergeOptions& options)
     if (all.campaign.command == "collide")
         return print_collide(all, options.output);
 #ifdef CINCH_EXACT
+    if (all.campaign.command == "audit")
+        return print_audit(all, options.output);
     if (all.campaign.command == "bake")
         return print_bake(all, options.output);
     if (all.campaign.command == "verify --times all")
         return print_verify_times(all, options.output);
     if (all.campaign.command == "verify")
         return print_verify(all, options.output, options.folder);
+    if (all.campaign.command == "cost")
+        return print_cost(all, options.output);
     if (all.campaign.command == "tightness")
         return print_tightness(all, options.output);
     if (all.campaign.command == "fuzz")

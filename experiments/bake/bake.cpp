@@ -104,18 +104,6 @@ std::vector<BakedBody> bodies_of(const Merged& all)
     return bodies;
 }
 
-exact::TimeVerdict verdict_of(const Merged& all)
-{
-    exact::TimeVerdict verdict;
-    for (const Rows& cell : all.cells)
-        if (!cell.empty())
-            if (const auto own = baked_clip_of({cell.front()}).verdict)
-                verdict.add(*own);
-    return verdict;
-}
-
-int status_of(const exact::TimeVerdict& verdict) { return verdict.violated || verdict.undecided ? 1 : 0; }
-
 void print_bake(const Merged& all, const OutputOptions& options, const Provenance& from,
                 const Completeness& completeness)
 {
@@ -164,7 +152,7 @@ void print_bake(const Merged& all, const OutputOptions& options, const Provenanc
     }
     output.finish();
     if (words && plan.at("prove"))
-        fmt::print("{}\n", verdict_line(verdict_of(all)));
+        fmt::print("{}\n", verdict_line(verdict_of_clips(all)));
 }
 
 // A body made ready, with which its clips are baked one by one.
@@ -280,7 +268,7 @@ void refuse_what_does_not_go_together(const BakeOptions& options, std::size_t bo
 int print_bake(const Merged& all, const OutputOptions& options)
 {
     print_bake(all, options, provenance_of(all.campaign), {});
-    return status_of(verdict_of(all));
+    return status_of(verdict_of_clips(all));
 }
 
 int bake(const BakeOptions& options)
@@ -300,7 +288,7 @@ int bake(const BakeOptions& options)
     const CampaignRun run =
         run_campaign(campaign_of("bake", plan_of(bodies, bakers, options), cells.size()), options.shards,
                      [&](std::size_t cell) { return bakers[cells[cell].first]->bake(cells[cell].second); });
-    const exact::TimeVerdict verdict = verdict_of(run.all);
+    const exact::TimeVerdict verdict = verdict_of_clips(run.all);
     const bool files = !options.npz.empty() || !options.usd.empty() || !options.certificate.empty();
     if (run.is_whole() && run.shard.count == 1 && files) {
         bakers.front()->commit(verdict);

@@ -3,27 +3,33 @@
 
 #include <cmath>
 
+#include "experiments/records/json_number.hpp"
+
 namespace cinch {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-double number(const Json& value) { return value.is_null() ? HUGE_VAL : value.get<double>(); }
-Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(); }
-
 Json to_json(const BakedFigures& f)
 {
-    return {{"time_mean", f.time_mean},   {"time_max", finite(f.time_max)}, {"root", finite(f.root)},
-            {"leaves", finite(f.leaves)}, {"missed_30fps", f.missed_30fps}, {"missed_keys", f.missed_keys},
-            {"missed", f.missed_by_us},   {"key_segments", f.key_segments}, {"intervals", f.intervals},
+    return {{"time_mean", f.time_mean},    {"time_max", or_null(f.time_max)}, {"root", or_null(f.root)},
+            {"leaves", or_null(f.leaves)}, {"missed_30fps", f.missed_30fps},  {"missed_keys", f.missed_keys},
+            {"missed", f.missed_by_us},    {"key_segments", f.key_segments},  {"intervals", f.intervals},
             {"length_s", f.length_s}};
 }
 
 BakedFigures figures_of(const Json& f)
 {
-    return {number(f.at("time_mean")), number(f.at("time_max")), number(f.at("root")), number(f.at("leaves")),
-            f.at("missed_30fps"),      f.at("missed_keys"),      f.at("missed"),       f.at("key_segments"),
-            f.at("intervals"),         f.at("length_s")};
+    return {number_or(f.at("time_mean"), HUGE_VAL),
+            number_or(f.at("time_max"), HUGE_VAL),
+            number_or(f.at("root"), HUGE_VAL),
+            number_or(f.at("leaves"), HUGE_VAL),
+            f.at("missed_30fps"),
+            f.at("missed_keys"),
+            f.at("missed"),
+            f.at("key_segments"),
+            f.at("intervals"),
+            f.at("length_s")};
 }
 
 } // namespace
@@ -38,12 +44,12 @@ Rows rows_of(const BakedClip& clip)
     if (clip.figures)
         head["figures"] = to_json(*clip.figures);
     if (clip.cost)
-        head["refits"] = {finite(clip.cost->value), finite(clip.cost->low), finite(clip.cost->high)};
+        head["refits"] = {or_null(clip.cost->value), or_null(clip.cost->low), or_null(clip.cost->high)};
     Rows rows{std::move(head)};
     for (const BakedInterval& interval : clip.intervals) {
         Json supports = Json::array();
         for (const double s : interval.supports)
-            supports.push_back(finite(s));
+            supports.push_back(or_null(s));
         rows.push_back({{"t0", interval.first_s},
                         {"t1", interval.last_s},
                         {"intervals", interval.intervals},
@@ -64,16 +70,30 @@ BakedClip baked_clip_of(const Rows& rows)
         clip.figures = figures_of(head.at("figures"));
     if (head.contains("refits")) {
         const Json& r = head.at("refits");
-        clip.cost = r.at(0).is_null() ? Range(std::nan("")) : Range(number(r.at(0)), number(r.at(1)), number(r.at(2)));
+        clip.cost = r.at(0).is_null() ? Range(std::nan(""))
+                                      : Range(number_or(r.at(0), HUGE_VAL), number_or(r.at(1), HUGE_VAL),
+                                              number_or(r.at(2), HUGE_VAL));
     }
     for (std::size_t i = 1; i < rows.size(); ++i) {
         BakedInterval interval{rows[i].at("t0"), rows[i].at("t1"), {}, rows[i].at("intervals")};
         for (const Json& s : rows[i].at("supports"))
-            interval.supports.push_back(number(s));
+            interval.supports.push_back(number_or(s, HUGE_VAL));
         clip.intervals.push_back(std::move(interval));
     }
     return clip;
 }
+
+exact::TimeVerdict verdict_of_clips(const Merged& all)
+{
+    exact::TimeVerdict verdict;
+    for (const Rows& cell : all.cells)
+        if (!cell.empty())
+            if (const auto own = baked_clip_of({cell.front()}).verdict)
+                verdict.add(*own);
+    return verdict;
+}
+
+int status_of(const exact::TimeVerdict& verdict) { return verdict.violated || verdict.undecided ? 1 : 0; }
 
 Json to_json(const BakedBody& body)
 {

@@ -6,6 +6,7 @@
 #include "experiments/bake/baked_clip.hpp"
 #include "experiments/bake/prove.hpp"
 #include "experiments/measure/race.hpp"
+#include "experiments/records/row_folder.hpp"
 
 namespace cinch {
 
@@ -23,6 +24,10 @@ struct BakedClip {
 /// One row for the clip, and one per interval. Infinite supports are null.
 Rows rows_of(const BakedClip& clip);
 BakedClip baked_clip_of(const Rows& rows);
+
+/// Of the clips that are there; and the exit status that goes with it: 0 where all is proven, else 1.
+exact::TimeVerdict verdict_of_clips(const Merged& all);
+int status_of(const exact::TimeVerdict& verdict);
 
 /// A body of the plan of a run.
 struct BakedBody {

@@ -104,17 +104,6 @@ Json plan_of(const std::vector<TimedBody>& bodies, const std::vector<std::unique
             {"leaf", options.leaf}};
 }
 
-exact::TimeVerdict verdict_of(const Merged& all)
-{
-    exact::TimeVerdict verdict;
-    for (const Rows& cell : all.cells)
-        if (!cell.empty())
-            verdict.add(*baked_clip_of(cell).verdict);
-    return verdict;
-}
-
-int status_of(const exact::TimeVerdict& verdict) { return verdict.violated || verdict.undecided ? 1 : 0; }
-
 void print_times(const Merged& all, const OutputOptions& options, const Provenance& from,
                  const Completeness& completeness)
 {
@@ -157,7 +146,7 @@ void print_times(const Merged& all, const OutputOptions& options, const Provenan
     }
     output.finish();
     if (words)
-        fmt::print("{}{}\n", verdict_line(verdict_of(all)), partial_mark(missing));
+        fmt::print("{}{}\n", verdict_line(verdict_of_clips(all)), partial_mark(missing));
 }
 
 } // namespace
@@ -165,7 +154,7 @@ void print_times(const Merged& all, const OutputOptions& options, const Provenan
 int print_verify_times(const Merged& all, const OutputOptions& options)
 {
     print_times(all, options, provenance_of(all.campaign), {});
-    return status_of(verdict_of(all));
+    return status_of(verdict_of_clips(all));
 }
 
 int verify_all_times(const VerifyOptions& options)
@@ -190,7 +179,7 @@ int verify_all_times(const VerifyOptions& options)
     const CampaignRun run =
         run_campaign(campaign_of("verify --times all", plan_of(bodies, provers, options), cells.size()), options.shards,
                      [&](std::size_t cell) { return provers[cells[cell].first]->prove_clip(cells[cell].second); });
-    const exact::TimeVerdict verdict = verdict_of(run.all);
+    const exact::TimeVerdict verdict = verdict_of_clips(run.all);
     if (run.is_whole() && run.shard.count == 1)
         provers.front()->commit(verdict);
     return end_run(run, options.shards, status_of(verdict), [&] {

@@ -6,6 +6,7 @@
 #include "cinch/bounds.hpp"
 #include "cinch/refit.hpp"
 #include "experiments/input.hpp"
+#include "experiments/records/run_campaign.hpp"
 #include "experiments/report/record_output.hpp"
 
 namespace cinch {
@@ -16,12 +17,15 @@ struct CostOptions {
     double seconds = 2;     ///< of measuring per k
     std::size_t leaf = 16;  ///< triangles
     bool all_scenes = true; ///< the gap of the dual evaluation on every shipped shape, not on the input alone
+    ShardOptions shards;
     OutputOptions output;
 };
 
 /// What accuracy costs in time: every method in every arithmetic, with looseness and what is guaranteed; and how far
 /// the dual evaluation stays from the optimum. Returns the exit status.
 int cost(const CostOptions& options);
+/// The same of rows that shards have measured (`cinch merge`).
+int print_cost(const Merged& all, const OutputOptions& options);
 
 /// BVs on which arithmetics are compared: one of each level, in one frame.
 struct CostSample {
