@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "cinch/surface.hpp"
 #include "experiments/audit/audit.hpp"
+#include "experiments/audit/crowd.hpp"
 #include "experiments/command_line.hpp"
 #include "experiments/command_line_options.hpp"
 
@@ -10,13 +12,20 @@ void add_audit(CLI::App& app, Run& run)
     const auto options = std::make_shared<AuditOptions>();
     AuditOptions& o = *options;
     CLI::App& command = *app.add_subcommand("audit", "what the bounds of engines do on your files");
-    command.callback([options, &run] { run = [options] { return audit(*options); }; });
+    const auto crowd = std::make_shared<CrowdAuditOptions>();
+    command.callback([options, crowd, &run] {
+        crowd->output = options->output;
+        run = [options, crowd] {
+            if (options->inputs.empty() == (crowd->bodies == 0))
+                throw InputError("audit: files, or --crowd N, are needed");
+            return crowd->bodies > 0 ? audit_crowd(*crowd) : audit(*options);
+        };
+    });
     const auto option = options_of(command);
     command
         .add_option(
             "FILE", o.inputs,
             wrapped("characters (.glb, .gltf, .vrm), scenes, shapes, or a mesh with --weights and --transforms"))
-        ->required()
         ->option_text("...");
     option("--clip", o.input.clip, "of a character, the only one to audit [all]")->option_text("NAME");
     option("--weights", o.input.weights, "weights of a mesh's vertices as text, as 'cinch verify' takes them")
@@ -29,6 +38,10 @@ void add_audit(CLI::App& app, Run& run)
     option("--show", o.show, "print the counterexample of this number in place of the table")
         ->check(CLI::Range(1, 1000000000))
         ->option_text("K");
+    option("--crowd", crowd->bodies,
+           "no files, but this many bodies of 22 and of 70 simulation nodes: what a box each, and 64, cost")
+        ->check(CLI::Range(1, 1000000))
+        ->option_text("N");
     add_shards(command, o.shards);
     add_output(command, o.output, Draws::nothing);
     command.footer(R"(Each formula is written from its engine's documentation. It is refuted by a vertex
@@ -41,6 +54,7 @@ Examples:
   cinch audit robot.glb --clip Robot_Dance --show 1
   cinch audit *.glb --json > audit.jsonl
   cinch audit *.glb --out rows             clip by clip, and on after a Ctrl-C
+  cinch audit --crowd 1000                 what boxes of crowds cost
 
 Exit status: 0 audited, whatever was found; 2 bad usage or input, 130 interrupted
 (results so far are printed).)");

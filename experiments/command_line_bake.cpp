@@ -52,6 +52,9 @@ void add_bake(CLI::App& app, Run& run)
            "weights that morph targets may have at any time, whatever the clips say: any, from 0 to 1, or other limits "
            "[as the clips say]")
         ->option_text("any|LEAST..GREATEST");
+    option("--poses", o.input.poses,
+           "in place of clips every pose in which each bone keeps within its limits, of this JSON file, see below")
+        ->option_text("FILE");
     command.add_flag("--prove", o.prove,
                      wrapped("prove every bound at every BV, by exact intervals over time on the transforms"));
     command.add_flag("--report", o.report,
@@ -80,6 +83,15 @@ void add_bake(CLI::App& app, Run& run)
     command.footer(R"(A bound holds at every real time of its interval, keys or not: each vertex stays
 below the parabola through the bounds at both ends that its acceleration allows.
 
+Limits of bones, by the names that the file gives them:
+  {"bones": {"Head": {"degrees": 40},
+             "Knee": {"axis": [1, 0, 0], "degrees": [0, 130]},
+             "Hips": {"degrees": 180, "move": 0.5}},
+   "others": {"degrees": 5}}
+degrees from the file's pose about any axis, or from one angle to another about
+an axis of the bone's; move: of its joint, in the file's unit; others: of bones
+that are not named [none].
+
 Examples:
   cinch bake robot.glb                       all clips, the character's box
   cinch bake robot.glb --whole --level -1 --json > bounds.jsonl
@@ -89,6 +101,7 @@ Examples:
   cinch bake robot.glb --certificate robot.jsonl.gz
   cinch bake robot.glb --engine float32 --joint-error 1e-5 --nlerp
   cinch bake face.vrm --morphs any           for weights that a program sets
+  cinch bake robot.glb --poses limits.json   for poses that a program sets
   cinch bake robot.glb --report              how tight, and what frames miss
   cinch bake robot.glb --prove --out proof   clip by clip, and on after a Ctrl-C
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "cinch/bounds.hpp"
+#include "experiments/baselines/engines/engine_formula.hpp"
 #include "experiments/command_line.hpp"
 #include "experiments/command_line_options.hpp"
 #include "experiments/report/reproduce.hpp"
@@ -17,8 +18,16 @@ void add_view(CLI::App& app, Run& run)
     const auto options = std::make_shared<ViewOptions>();
     ViewOptions& o = *options;
     CLI::App& command = *app.add_subcommand("view", "a page to look at: surface, nodes, bounds (Figs. 1, 6, 7)");
-    command.callback([options, &run] { run = [options] { return view(*options); }; });
+    command.callback([options, &run] {
+        options->request.formula_first = !options->request.formulas.empty();
+        if (options->request.formula_first)
+            options->request.level = 0;
+        run = [options] { return view(*options); };
+    });
     const auto option = options_of(command);
+    std::vector<std::string> formulas;
+    for (const EngineFormula& formula : engine_formulas())
+        formulas.push_back(formula.name);
     CLI::Option* scene = option("SCENE", o.request.scene,
                                 fmt::format("a scene ({}, or a .json file), a shape ({}), a mesh or a skinned "
                                             "character [the paper's figures: brain-pull, santa-ring-6 and fishes]",
@@ -64,6 +73,12 @@ void add_view(CLI::App& app, Run& run)
                   wrapped("bounds of intervals too, each for all of its times, as 'cinch bake' has them; a character "
                           "with its morph targets"))
         ->needs(scene);
+    option("--formula", o.request.formulas,
+           fmt::format("formulas of engines for the whole surface too, the first one shown first: {}",
+                       fmt::join(formulas, ", ")))
+        ->delimiter(',')
+        ->option_text("NAME,...")
+        ->needs(scene);
     option("--bits", o.request.bits, "of the grid that positions are rounded to [16]; fewer make a smaller page")
         ->check(CLI::Range(8, 16))
         ->option_text("N")
@@ -108,6 +123,7 @@ void add_view(CLI::App& app, Run& run)
   cinch view fishes --report fishes.html --frames 30 --levels 5 --bits 14
   cinch view robot.glb --report robot.html
   cinch view robot.glb --clip Robot_Dance --swept --report dance.html
+  cinch view robot.glb --formula rest-box --report outside.html
 
 Bounds are rounded outward to the grid of the vertices, so that what is drawn
 of a bound contains what is drawn of the surface.

@@ -23,6 +23,8 @@ struct InputOptions {
     std::string clip;
     std::string morphs; ///< of a character over time: "any" or "LEAST..GREATEST", weights that morph targets may have
                         ///< at any time, instead of the clip's
+    std::string poses;  ///< of a character over time: a file of limits of its bones, whose poses all count, instead of
+                        ///< clips (read_poses.hpp)
     double fps = 0;
     std::size_t frames = 0;
     bool last_frames = false; ///< of a scene: the last `frames` one after the other, instead of evenly spread

@@ -15,6 +15,7 @@
 #include "experiments/records/json_number.hpp"
 #include "experiments/report/number.hpp"
 #include "experiments/report/table.hpp"
+#include "experiments/report/view.hpp"
 
 namespace cinch {
 namespace {
@@ -168,7 +169,7 @@ void print_summary(const std::vector<Found>& found)
 }
 
 void print_audit(const Merged& all, const OutputOptions& options, const Provenance& from,
-                 const Completeness& completeness)
+                 const Completeness& completeness, const Json& view)
 {
     const std::vector<Found> found = all_of(all);
     RecordOutput output(options, from);
@@ -180,6 +181,8 @@ void print_audit(const Merged& all, const OutputOptions& options, const Provenan
         described = f.body.name;
         output.add(record_of(f));
     }
+    if (!view.is_null())
+        output.add({{"experiment", "view"}, {"scene", view["scene"]}, {"view", view}});
     output.finish();
     if (options.records_only())
         return;
@@ -201,6 +204,47 @@ void print_audit(const Merged& all, const OutputOptions& options, const Provenan
     print_summary(found);
     print_legend();
     fmt::print("{}\n", describe(from));
+}
+
+// The character in the box that it is farthest outside of, at that time, to look at.
+Json view_of_worst(const std::vector<Found>& found, const AuditOptions& options)
+{
+    const Found* worst = nullptr;
+    for (const Found& f : found)
+        if (f.formula.worst && (!worst || f.formula.worst_share > worst->formula.worst_share))
+            worst = &f;
+    if (!worst)
+        return {};
+    ViewRequest request;
+    request.scene = worst->body.name;
+    request.title = worst->formula.formula + ", " + worst->clip;
+    request.text =
+        fmt::format("{} ({}): {} of the half diagonal outside at {:.3f} s, and what else bounds the character.",
+                    worst->formula.formula, worst->formula.used_by, share_of(worst->formula.worst_share),
+                    worst->formula.worst->time_s);
+    request.clip = worst->clip;
+    request.weights = options.input.weights;
+    request.transforms = options.input.transforms;
+    request.partial = options.input.partial;
+    request.formulas = {worst->formula.formula};
+    for (const Found& f : found)
+        if (f.body.name == worst->body.name && f.clip == worst->clip && !f.formula.formula.starts_with("cinch") &&
+            f.formula.formula != worst->formula.formula)
+            request.formulas.push_back(f.formula.formula);
+    request.methods = {Method::best};
+    request.swept = true;
+    request.formula_first = true;
+    request.level = 0;
+    request.surface = "glass";
+    Json view = make_view(request);
+    // The frame nearest to the counterexample's time.
+    const auto times = view["time_s"].get<std::vector<double>>();
+    std::size_t nearest = 0;
+    for (std::size_t f = 0; f < times.size(); ++f)
+        if (std::abs(times[f] - worst->formula.worst->time_s) < std::abs(times[nearest] - worst->formula.worst->time_s))
+            nearest = f;
+    view["first"]["frame"] = nearest;
+    return view;
 }
 
 std::string fraction(double x) { return fmt::format("{:.17g} ({:a})", x, x); }
@@ -233,7 +277,7 @@ int show(const std::vector<Found>& found, std::size_t number)
 
 int print_audit(const Merged& all, const OutputOptions& options)
 {
-    print_audit(all, options, provenance_of(all.campaign), {});
+    print_audit(all, options, provenance_of(all.campaign), {}, {});
     return 0;
 }
 
@@ -263,8 +307,9 @@ int audit(const AuditOptions& options)
     if (options.show)
         return show(all_of(run.all), options.show);
     return end_run(run, options.shards, 0, [&] {
+        const bool draw = !options.output.report.empty() && !options.output.records_only() && run.is_whole();
         print_audit(run.all, options.output, options.shards.folder.empty() ? from : provenance_of(run.all.campaign),
-                    run.completeness());
+                    run.completeness(), draw ? view_of_worst(all_of(run.all), options) : Json());
     });
 }
 

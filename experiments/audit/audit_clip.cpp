@@ -5,12 +5,11 @@
 #include <cmath>
 #include <memory>
 
-#include <Eigen/LU>
-
 #include "cinch/refit.hpp"
 #include "exact/vertex_enclosure.hpp"
 #include "experiments/audit/exact_clip.hpp"
 #include "experiments/bake/baked_clip.hpp"
+#include "experiments/baselines/engines/engine_character.hpp"
 #include "experiments/measure/race.hpp"
 #include "experiments/report/interrupt.hpp"
 
@@ -52,29 +51,6 @@ std::vector<double> times_of(const TimedMotion& motion, int samples)
     for (std::size_t i = 0; i < most_instants; ++i)
         fewer.push_back(times[i * (times.size() - 1) / (most_instants - 1)]);
     return fewer;
-}
-
-EngineCharacter character_of(const TimedBody& body, const TimedClip& clip)
-{
-    EngineCharacter out{body.input.surface, clip.motion, {}, {}, 0, body.targets()};
-    if (!body.character) {
-        out.file_pose = clip.motion.at(clip.motion.first_s());
-        return out;
-    }
-    const Character& character = *body.character;
-    out.file_pose = rest_pose(character).frame(0);
-    for (const Joint& joint : character.joints) {
-        Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
-        for (int r = 0; r < 3; ++r)
-            for (int c = 0; c < 4; ++c)
-                m(r, c) = joint.inverse_bind.m[r][c];
-        out.pivot.push_back(m.inverse().topRightCorner<3, 1>());
-        if (joint.bone < character.joints[out.root].bone)
-            out.root = out.pivot.size() - 1;
-    }
-    if (!std::all_of(out.pivot.begin(), out.pivot.end(), [](const Vec3& x) { return x.allFinite(); }))
-        out.pivot.clear(); // a joint that flattens the mesh
-    return out;
 }
 
 // How far the surface is beyond a bound at an instant, and which vertex is the farthest.
@@ -280,7 +256,7 @@ void time(const std::vector<Instant>& instants, double seconds, std::vector<Audi
 
 std::vector<AuditedFormula> audit_clip(const TimedBody& body, const TimedClip& clip, const AuditOptions& options)
 {
-    const EngineCharacter character = character_of(body, clip);
+    const EngineCharacter character = engine_character(body, clip);
     std::vector<Instant> instants;
     for (const double t : times_of(clip.motion, options.samples)) {
         throw_if_interrupted();

@@ -20,6 +20,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr const char* statement_of_poses =
+    "every vertex, in exact arithmetic and as computed, in every pose within the limits";
+
 std::string statement_of(const Engine& engine)
 {
     std::string out = "every vertex, in exact arithmetic and as computed";
@@ -222,7 +225,7 @@ Json plan_of(const std::vector<TimedBody>& bodies, const std::vector<std::unique
     }
     return {{"bodies", all},
             {"checksum", sum},
-            {"statement", statement_of(options.engine)},
+            {"statement", options.input.poses.empty() ? statement_of(options.engine) : statement_of_poses},
             {"joint_error", options.engine.joint_error},
             {"method", name_of(options.bounds.methods)},
             {"precision", options.bounds.precision == Precision::float32 ? "float" : "double"},
@@ -257,6 +260,8 @@ void refuse_what_does_not_go_together(const BakeOptions& options, std::size_t bo
     const bool files = !options.npz.empty() || !options.usd.empty();
     if (bodies > 1 && (files || !options.certificate.empty()))
         throw InputError("--npz, --usd and --certificate hold one body; --body chooses it");
+    if (!options.input.poses.empty() && (options.prove || options.report || !options.certificate.empty()))
+        throw InputError("--prove, --report and --certificate are of clips; not with --poses");
     if (!options.shards.folder.empty() && !options.certificate.empty())
         throw InputError("--certificate is written in one run, without --out");
     if (!options.shards.shard.empty() && files)

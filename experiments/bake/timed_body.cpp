@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "experiments/bake/read_poses.hpp"
 #include "experiments/input_checksum.hpp"
 #include "experiments/report/interrupt.hpp"
 #include "experiments/shipped.hpp"
@@ -62,6 +63,8 @@ std::vector<TimedBody> load_timed(const InputOptions& options, const Engine& eng
     if (!is_character_file(what.input)) {
         if (!what.morphs.empty())
             throw InputError("--morphs is of characters (.glb, .gltf, .vrm)");
+        if (!what.poses.empty())
+            throw InputError("--poses is of characters (.glb, .gltf, .vrm)");
         if (!engine.exact())
             throw InputError("--engine, --nlerp and --joint-error are of characters (.glb, .gltf, .vrm)");
         if (is_scene(what.input)) { // all of its frames, of which a choice is the usual
@@ -85,6 +88,14 @@ std::vector<TimedBody> load_timed(const InputOptions& options, const Engine& eng
     body.input = load_character_surface(what, character);
     if (!what.morphs.empty())
         free_weights(body, character, what, engine);
+    if (!what.poses.empty()) {
+        if (!what.clip.empty() || !engine.exact())
+            throw InputError("--poses stands for clips; not with --clip, --engine, --nlerp and --joint-error");
+        const std::vector<PoseLimit> limits = read_poses(what.poses, character);
+        body.input.report.push_back(fmt::format("every pose within the limits of {}", what.poses));
+        body.clips.push_back({poses_within(character, limits, body.input.surface), nullptr});
+        return bodies;
+    }
     std::vector<const Character::Animation*> wanted;
     for (const Character::Animation& animation : character.animations)
         if (what.clip.empty() || animation.name == what.clip)
@@ -122,6 +133,9 @@ std::uint64_t checksum_of(const TimedBody& body, std::uint64_t sum)
     for (const TimedClip& clip : body.clips) {
         take(clip.motion.name);
         take(clip.motion.keys);
+        if (clip.motion.name == "poses" && !clip.animation && body.character) // of limits that stand in no curve
+            for (const MotionInterval::Limits& limit : clip.motion.over(0, 0).limits)
+                sum = checksum({reinterpret_cast<const char*>(&limit.error), sizeof limit.error}, sum);
         if (!clip.animation)
             continue;
         for (const Curve& curve : clip.animation->curves) {

@@ -23,7 +23,10 @@ const std::vector<BackendKind>& backend_kinds()
         {"eq12-aabb-18", "AABB/18-DOP", [](const CollideScene& s) { return make_paper(s, 18, RestShape::aabb); }},
         {"eq12-aabb-26", "AABB/26-DOP", [](const CollideScene& s) { return make_paper(s, 26, RestShape::aabb); }},
 #ifdef CINCH_EMBREE
-        {"embree", "Embree, user geometry, REFIT and rtcCollide", make_embree},
+        {"embree", "Embree " CINCH_EMBREE ", user geometry, REFIT and rtcCollide", make_embree},
+#endif
+#ifdef CINCH_TINYBVH
+        {"tinybvh", "tinybvh, SAH tree, refit, both trees descended at once", make_tinybvh},
 #endif
 #ifdef CINCH_FCL
         {"fcl", "FCL, AABB, replace and refit", make_fcl},

@@ -6,7 +6,11 @@
 #include <limits>
 #include <mutex>
 
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
 #include <embree3/rtcore.h>
+#endif
 
 #include "cinch/surface.hpp"
 #include "experiments/collide/positions.hpp"

@@ -9,6 +9,7 @@ namespace cinch {
 std::unique_ptr<Backend> make_embree(const CollideScene& scene);
 std::unique_ptr<Backend> make_fcl(const CollideScene& scene);
 std::unique_ptr<Backend> make_bullet(const CollideScene& scene);
+std::unique_ptr<Backend> make_tinybvh(const CollideScene& scene);
 std::unique_ptr<Backend> make_cgal(const CollideScene& scene);
 
 } // namespace cinch

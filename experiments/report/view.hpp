@@ -28,11 +28,14 @@ struct ViewRequest {
 
     bool swept = false; ///< of a clip's intervals, for all of their times, first of all; the frames with morph targets
 
+    std::vector<std::string> formulas; ///< of engines, for the root: names of engine_formulas()
+
     Method method = Method::best; ///< shown first
     std::size_t level = 3;
     double time = 1;               ///< of the clip's length: the frame
     std::string surface = "solid"; ///< or "glass", "hidden"
     bool show_nodes = false, show_bounds = true;
+    bool formula_first = false;          ///< the first of `formulas`, in place of `method`
     double azimuth = 35, elevation = 20; ///< degrees; of the camera, from +x towards +y, and up
 };
 

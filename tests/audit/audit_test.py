@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""audit_test.py CINCH [SHARED]: what `cinch audit` says of formulas of engines: every counterexample against a reader and
-sampler of glTF of its own, written from the specification; and formulas on hand-made skins, where it is known what they
-do."""
+"""audit_test.py CINCH [SHARED]: what `cinch audit` says of formulas of engines: every counterexample against a reader
+and sampler of glTF of its own, written from the specification; and formulas on hand-made skins, of which it is known
+what they do."""
 import json, math, os, pathlib, subprocess, sys, tempfile
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent / "time"))

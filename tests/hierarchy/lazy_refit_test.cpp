@@ -243,7 +243,7 @@ TEST_CASE(
             Maps apart = there; // the nodes' images far from each other
             for (AffineMap& map : apart)
                 map.m[dice.below(3)][3] += 1e5 * far * dice.symmetric();
-            for (const LazyOptions& options : share_of(options_of_all))
+            for (const LazyOptions& options : test::share_of(options_of_all))
                 CHECK(go_through(dice, surface, {{here}, {there}, {still}, {apart}, {here}}, options, size_of(options))
                           .inner > 20);
         }
@@ -255,7 +255,7 @@ TEST_CASE(
         const DeformableSurface at_rest = patchy(dice, mesh, 8, 4);
         const Maps turned = around(dice, 8, dice.rotation(), scale * dice.point(), 0.1),
                    scaled = around(dice, 8, scale * dice.rotation(), scale * dice.point(), 0);
-        for (const LazyOptions& options : share_of(options_of_all)) {
+        for (const LazyOptions& options : test::share_of(options_of_all)) {
             go_through(dice, at_rest, {{turned}, {turned}}, options, size_of(options));
             go_through(dice, by_motion, {{scaled}, {scaled}}, options, size_of(options));
         }
@@ -273,7 +273,7 @@ TEST_CASE("the same for given vertices, wherever they are")
             for (Positions& places : given)
                 for (const Vec3& x : surface.mesh.vertices)
                     places.push_back(scale * (x + far * Vec3(1, -0.7, 0.3) + 0.1 * dice.point()));
-            for (const LazyOptions& options : share_of(options_of_all))
+            for (const LazyOptions& options : test::share_of(options_of_all))
                 go_through(dice, surface, {{{}, given[0]}, {{}, given[1]}, {{}, given[2]}}, options, size_of(options));
         }
 }

@@ -150,6 +150,9 @@ std::uint32_t GltfSkeleton::add_bone(std::size_t node)
         const GltfValue value = document_.at("nodes", i);
         note_extensions(value, missing_, {"KHR_node_visibility", instancing});
         Bone bone;
+        bone.name = one_line(value.text_or("name", ""));
+        if (bone.name.empty())
+            bone.name = value.place();
         if (scene_.parent[i] >= 0)
             bone.parent = bone_of_node_[static_cast<std::size_t>(scene_.parent[i])];
         auto copy = [&](const char* key, auto& to) {
@@ -215,6 +218,7 @@ std::vector<std::uint32_t> GltfSkeleton::instances(std::size_t node)
     std::vector<std::uint32_t> joints;
     for (std::size_t i = 0; i < *count; ++i) {
         Bone bone;
+        bone.name = value.place() + ", instance " + std::to_string(i);
         bone.parent = parent;
         auto copy = [&](const Given& g, auto& to) {
             if (!g.numbers.empty())

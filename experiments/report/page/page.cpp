@@ -31,7 +31,7 @@ std::vector<Section> sections_of(const Results& results)
 {
     std::vector<Section> all;
     for (Section (*make)(const Results&) :
-         {scaling_section, tightness_section, collide_section, cost_section, proof_section})
+         {scaling_section, tightness_section, collide_section, cost_section, proof_section, audit_section})
         all.push_back(make(results));
     return all;
 }
@@ -120,6 +120,8 @@ std::string command_page(const Results& results, const std::string& note)
     const std::string claims = note.empty() ? claims_section(sections, false) : "";
     if (!claims.empty())
         body += html::paragraph(reading) + claims;
+    if (const std::string views = views_of(results); !views.empty())
+        body += html::section("views", "To look at", views);
     bool paper = false;
     for (const Section& section : sections)
         if (!section.body.empty()) {

@@ -30,5 +30,6 @@ Section tightness_section(const Results& results); ///< Figs. 1 and 5, attributi
 Section collide_section(const Results& results);   ///< Tables 2 to 4, Figs. 6 and 7
 Section cost_section(const Results& results);      ///< accuracy and cost
 Section proof_section(const Results& results);     ///< verify, corners
+Section audit_section(const Results& results);     ///< formulas of engines
 
 } // namespace cinch

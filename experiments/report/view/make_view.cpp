@@ -11,6 +11,7 @@
 #include "cinch/refit.hpp"
 #include "cinch/surface.hpp"
 #include "experiments/bake/swept.hpp"
+#include "experiments/baselines/engines/engine_character.hpp"
 #include "experiments/input.hpp"
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/or_leave.hpp"
@@ -214,9 +215,37 @@ std::vector<std::int32_t> swept_on_grid(const ViewRequest& request, const std::v
     return out;
 }
 
+// Of the roots alone, by a formula of engines.
+std::vector<std::int32_t> roots_by_formula(const std::string& name, const ViewRequest& request,
+                                           const std::vector<TimedBody>& timed, const std::vector<DrawnBody>& bodies,
+                                           const DrawnBvs& bvs, const Grid& grid, std::size_t frames)
+{
+    const auto k = static_cast<std::size_t>(request.kdop);
+    const auto axes = axes_of(request.kdop);
+    std::vector<std::int32_t> out(frames * bvs.bv.size() * k, Grid::unbounded);
+    for (std::uint32_t b = 0; b < bodies.size(); ++b) {
+        const ReadyFormula formula = ready_formula(name, timed[b], timed[b].clips.front());
+        for (std::size_t f = 0; f < frames; ++f) {
+            throw_if_interrupted();
+            const EngineBound bound = formula.at(bodies[b].input.clip.frame(f));
+            for (std::size_t i = 0; i < bvs.bv.size(); ++i)
+                for (std::size_t d = 0; bvs.body[i] == b && bvs.bv[i] == 0 && d < k; ++d) {
+                    double support = 0; // of the box, or of the ball
+                    for (std::size_t r = 0; r < 3; ++r)
+                        if (const int c = d % 2 ? -axes[d / 2][r] : axes[d / 2][r]; c != 0)
+                            support += c > 0 ? c * bound.high[static_cast<int>(r)] : c * bound.low[static_cast<int>(r)];
+                    out[(f * bvs.bv.size() + i) * k + d] = grid.support(axes[d / 2], d % 2 == 1, support);
+                }
+        }
+    }
+    return out;
+}
+
 Json shown_first(const ViewRequest& request, std::size_t frames, std::size_t levels)
 {
-    return {{"method", request.swept ? all_times : std::string(name_of(request.method))},
+    return {{"method", request.formula_first ? request.formulas.front()
+                       : request.swept       ? all_times
+                                             : std::string(name_of(request.method))},
             {"level", std::min(request.level, levels - 1)},
             {"frame", static_cast<std::size_t>(
                           std::llround(std::clamp(request.time, 0.0, 1.0) * static_cast<double>(frames - 1)))},
@@ -254,8 +283,8 @@ nlohmann::ordered_json make_view(const ViewRequest& request)
     what.clip = request.clip;
     what.morph_frames = true;
     std::vector<TimedBody> timed;
-    const Inputs inputs =
-        request.swept ? with_all_times(what, request.frames, timed) : or_leave([what] { return load_inputs(what); });
+    const Inputs inputs = request.swept || !request.formulas.empty() ? with_all_times(what, request.frames, timed)
+                                                                     : or_leave([what] { return load_inputs(what); });
     const std::vector<Method>& methods = request.methods;
 
     std::vector<DrawnBody> bodies;
@@ -274,7 +303,7 @@ nlohmann::ordered_json make_view(const ViewRequest& request)
               {"scene", request.scene}};
     view["up"] = is_character_file(request.scene) ? "y" : "z"; // as the glTF specification has it
     view["missing"] = inputs.missing();
-    view["methods"] = methods.size() + (request.swept ? 1 : 0);
+    view["methods"] = methods.size() + request.formulas.size() + (request.swept ? 1 : 0);
     view["first"] = shown_first(request, frames, bvs.level.size() - 1);
     view["time_s"] = times;
     view["bodies"] = Json::array();
@@ -306,6 +335,9 @@ nlohmann::ordered_json make_view(const ViewRequest& request)
         if (request.swept)
             view["bounds"][all_times] = pack(swept_on_grid(request, timed, bodies, bvs, grid, frames), frames,
                                              bvs.bv.size(), static_cast<std::size_t>(request.kdop));
+        for (const std::string& formula : request.formulas)
+            view["bounds"][formula] = pack(roots_by_formula(formula, request, timed, bodies, bvs, grid, frames), frames,
+                                           bvs.bv.size(), static_cast<std::size_t>(request.kdop));
         Progress progress(fmt::format("{}: bounds for the view", request.scene), methods.size());
         std::size_t done = 0;
         for (const Method method : methods) {

@@ -80,6 +80,7 @@ struct Bone {
     std::array<double, 3> translation{0, 0, 0}; ///< in the file's unit
     std::array<double, 3> scale{1, 1, 1};       ///< along its own axes
     std::array<double, 4> rotation{0, 0, 0, 1}; ///< x, y, z, w
+    std::string name;                           ///< printable; "nodes[I]" where the file gives none
 };
 
 /// A joint of a skin, or what carries a mesh without a skin: a simulation node.

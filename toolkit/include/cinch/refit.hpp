@@ -70,4 +70,40 @@ private:
 RefitReport refit(const Bvh& bvh, const DeformableSurface& surface, std::span<const AffineMap> maps,
                   const RefitOptions& options, std::span<double> supports);
 
+/// How a crowd is bounded.
+struct CrowdOptions {
+    int level = 0; ///< of the tree: its BVs, and leaves above it, are the boxes; 0: one box, of the root
+    Rounding rounding = Rounding::proven; ///< `plain` is the formula of engines, and proves nothing
+};
+
+/// Boxes of many bodies that share one surface, each in a pose of its own: crowds of a character. A box per simulation
+/// node and BV, transformed and united, as engines bound a character; but in binary32 with room for all rounding, so
+/// that every box contains its BV's vertices in real arithmetic and as evaluate_vertex computes them. A Refitter is
+/// tighter where BVs have many simulation nodes; this is the least that a box costs.
+class CrowdRefitter {
+public:
+    /// Copies the rest data, which all bodies share. Throws std::invalid_argument for a level below 0, and for a BVH
+    /// without local boxes (RestDetail::boxes).
+    CrowdRefitter(const Bvh& bvh, const DeformableSurface& surface, const CrowdOptions& options = {});
+    ~CrowdRefitter();
+    /// What was moved from can only be destroyed.
+    CrowdRefitter(CrowdRefitter&&) noexcept;
+
+    /// The BVs whose boxes these are.
+    const std::vector<std::uint32_t>& bvs() const;
+
+    /// maps[i·J + j] moves simulation node j of body i, J of the surface; out[i·B + b] is the box of its BV bvs()[b], B
+    /// of them. In parallel over bodies; the same bits for every thread count and every target. Where a map is not
+    /// finite the boxes that its simulation node reaches are infinite. Throws std::invalid_argument for sizes that do
+    /// not fit and std::runtime_error for a changed floating-point environment.
+    void operator()(std::span<const AffineMap> maps, std::span<Aabb> out) const;
+
+    /// Of the rest data.
+    std::size_t bytes() const;
+
+private:
+    struct Parts;
+    std::unique_ptr<Parts> parts_;
+};
+
 } // namespace cinch

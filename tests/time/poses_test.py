@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""poses_test.py CINCH [SHARED]: `cinch bake --poses` against a reader of glTF of its own: poses drawn within the limits
+of bones, at their ends most of all, lie in the boxes; and boxes of limits that are too small do not hold them."""
+import json, math, os, pathlib, random, subprocess, sys, tempfile
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parent))
+from made_characters import crowd, face
+from sampled_character import Character
+
+program, shared = sys.argv[1], sys.argv[2] if len(sys.argv) > 2 else ""
+chance = random.Random(7)
+
+
+def product(a, b):
+    (x, y, z, w), (p, q, r, s) = a, b
+    return (w * p + x * s + y * r - z * q, w * q - x * r + y * s + z * p, w * r + x * q - y * p + z * s,
+            w * s - x * p - y * q - z * r)
+
+
+def about(axis, degrees):
+    n = math.hypot(*axis)
+    return (*(math.sin(math.radians(degrees) / 2) * x / n for x in axis), math.cos(math.radians(degrees) / 2))
+
+
+def direction():
+    while True:
+        d = [chance.uniform(-1, 1) for _ in range(3)]
+        if 0.1 < math.hypot(*d) < 1:
+            return [x / math.hypot(*d) for x in d]
+
+
+def drawn(character, limits):
+    """Channels of a pose within the limits."""
+    channels = []
+    for i, node in enumerate(character.nodes):
+        name = node.get("name") or "nodes[%d]" % i
+        limit = limits["bones"].get(name, limits.get("others", {}))
+        degrees, rest = limit.get("degrees", 0), node.get("rotation", (0, 0, 0, 1))
+        if "matrix" in node:
+            continue
+        end = chance.random() < 0.7
+        if isinstance(degrees, list):
+            to = product(rest, about(limit["axis"], chance.choice(degrees) if end else chance.uniform(*degrees)))
+        else:
+            to = product(rest, about(direction(), degrees if end else chance.uniform(0, degrees)))
+        far = limit.get("move", 0) * (1 if end else chance.random())
+        moved = [x + far * d for x, d in zip(node.get("translation", (0, 0, 0)), direction())]
+        channels += [(i, "rotation", [0.0], [to], "STEP"), (i, "translation", [0.0], [moved], "STEP")]
+    return channels
+
+
+def baked(name, limits, folder, *options, status=0):
+    file = os.path.join(folder, "limits.json")
+    with open(file, "w") as out:
+        out.write(limits if isinstance(limits, str) else json.dumps(limits))
+    run = subprocess.run([program, "bake", name, "--poses", file, "--json", *options], capture_output=True, text=True)
+    assert run.returncode == status, (name, limits, run.returncode, run.stderr)
+    if status:
+        return run.stderr
+    rows = [json.loads(line) for line in run.stdout.splitlines()]
+    assert all(row["clip"] == "poses" and "every pose" in row["statement"] for row in rows)
+    return rows[0]
+
+
+def outside(name, limits, box, poses):
+    """How far of their size samples leave the box, and how much of it they fill."""
+    character, worst = Character(name), -math.inf
+    low, high = [math.inf] * 3, [-math.inf] * 3
+    size = max(h - l for l, h in zip(box["min"], box["max"]))
+    for _ in range(poses):
+        for v in character.vertices(drawn(character, limits), 0.0):
+            for l, x, h in zip(box["min"], v, box["max"]):
+                worst = max(worst, (l - x) / size, (x - h) / size)
+            low, high = list(map(min, low, v)), list(map(max, high, v))
+    return worst, math.dist(box["min"], box["max"]) / math.dist(low, high)
+
+
+def check(name, limits, folder, poses=300):
+    box = baked(name, limits, folder)
+    worst, looseness = outside(name, limits, box, poses)
+    print("%s: %.3g outside at most, %.3f of what was drawn" % (os.path.basename(name), worst, looseness))
+    assert worst <= 1e-12, (name, limits, worst)
+    return looseness
+
+
+with tempfile.TemporaryDirectory() as folder:
+    names = [node.get("name") or "nodes[%d]" % i for i, node in enumerate(Character(face(folder)).nodes)]
+    for made in (face(folder), crowd(folder)):
+        character = Character(made)
+        names = [node.get("name") or "nodes[%d]" % i for i, node in enumerate(character.nodes)]
+        check(made, {"bones": {}, "others": {"degrees": 15, "move": 0.1}}, folder)
+        check(made, {"bones": {}, "others": {"degrees": 180, "move": 1}}, folder)
+        some = {"bones": {n: {"axis": direction(), "degrees": [-20, 100]} for n in names[1:3]},
+                "others": {"degrees": 2}}
+        if not any("matrix" in node for node in character.nodes):
+            check(made, some, folder)
+        assert check(made, {"bones": {}}, folder, 1) < 1.5  # the pose of the file
+        # Limits that are half of what is drawn.
+        box = baked(made, {"bones": {}, "others": {"degrees": 20, "move": 0}}, folder)
+        worst, _ = outside(made, {"bones": {}, "others": {"degrees": 40}}, box, 300)
+        assert worst > 0.005, worst
+        for wrong, what in (('{"bones": {"nobody": {}}}', "no bone 'nobody'"), ('{"bones": ', "is no JSON"),
+                            ('{"others": {"degrees": -1}}', "degrees"), ('{"others": {"degrees": [0, 1]}}', "one bone"),
+                            ('{"other": {}}', "other"), ('{"others": {"degrees": 3, "mov": 1}}', "mov")):
+            said = baked(made, wrong, folder, status=2)
+            assert what in said and said.count("\n") == 1, (wrong, said)
+        for option in (["--prove"], ["--certificate", folder + "/c"], ["--report"], ["--clip", "x"]):
+            baked(made, {"bones": {}}, folder, *option, status=2)
+    bad = baked(face(folder), '{"bones": {"%s": {"axis": [0, 0, 0], "degrees": [0, 1]}}}' % names[1], folder, status=2)
+    assert "axis" in bad, bad
+if shared and os.path.isdir(shared):
+    with tempfile.TemporaryDirectory() as folder:
+        for name in ("CesiumMan", "RiggedFigure"):
+            file = os.path.join(shared, "meshes", "skin", name + ".glb")
+            check(file, {"bones": {}, "others": {"degrees": 8}}, folder, 20)
+else:
+    print("the reference characters are not there: skipped")
