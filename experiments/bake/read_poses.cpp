@@ -25,8 +25,15 @@ double radians(double x) { return x * (std::numbers::pi / 180); }
 // Turns the bone to the middle of its angles.
 void turn(Bone& bone, const Vec3& axis, double by)
 {
-    const Eigen::Quaterniond now(bone.rotation[3], bone.rotation[0], bone.rotation[1], bone.rotation[2]);
-    const Eigen::Quaterniond to = now.normalized() * Eigen::Quaterniond(Eigen::AngleAxisd(by, axis));
+    double greatest = 0; // squares must neither vanish nor overflow
+    for (const double x : bone.rotation)
+        greatest = std::max(greatest, std::abs(x));
+    Eigen::Quaterniond now = Eigen::Quaterniond::Identity(); // as 0 is
+    if (greatest > 0)
+        now = Eigen::Quaterniond(bone.rotation[3] / greatest, bone.rotation[0] / greatest, bone.rotation[1] / greatest,
+                                 bone.rotation[2] / greatest)
+                  .normalized();
+    const Eigen::Quaterniond to = now * Eigen::Quaterniond(Eigen::AngleAxisd(by, axis));
     bone.rotation = {to.x(), to.y(), to.z(), to.w()};
 }
 

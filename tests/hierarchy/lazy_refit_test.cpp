@@ -6,6 +6,7 @@
 #include "cinch/deform.hpp"
 #include "tests/collide/clipper.hpp"
 #include "tests/collide/random_bodies.hpp"
+#include "tests/support.hpp"
 #include "toolkit/hierarchy/lazy_refit.hpp"
 
 using namespace cinch;

@@ -101,7 +101,7 @@ void CrowdRefitter::Parts::bound_in_doubles(std::span<const AffineMap> maps, std
                     reach += std::abs(m[c]) * local[n].half[c];
                     size += std::abs(m[c]) * (std::abs(local[n].centre[c]) + local[n].half[c]);
                 }
-                const double own = room * size + (room > 0 ? 32 * smallest_subnormal : 0);
+                const double own = room * size + (room > 0 ? (8 * influences + 32) * smallest_subnormal : 0);
                 auto take = [&](double& most, double x) { // what is no number hides nothing
                     most = x < infinite ? std::max(most, x) : infinite;
                 };

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "toolkit/bounds/greatest_mean.hpp"
 #include "toolkit/bounds/rounding.hpp"
@@ -44,8 +45,11 @@ MorphBoxes::MorphBoxes(const Bvh& bvh, const DeformableSurface& surface, std::sp
     };
     std::vector<std::vector<Displacement>> of(surface.mesh.vertices.size());
     for (std::uint32_t i = 0; i < targets.size(); ++i)
-        for (std::size_t n = 0; n < targets[i].vertex.size(); ++n)
+        for (std::size_t n = 0; n < targets[i].vertex.size(); ++n) {
+            if (targets[i].vertex[n] >= of.size() || (n > 0 && targets[i].vertex[n] <= targets[i].vertex[n - 1]))
+                throw std::invalid_argument("morph targets: vertices of the surface are needed, each once, ascending");
             of[targets[i].vertex[n]].push_back({i, lowest(targets[i], n), highest(targets[i], n)});
+        }
     std::vector<Range> range(targets.size());
     std::vector<std::uint32_t> met;
     for (const Bv& bv : bvh.bvs) {
@@ -126,7 +130,8 @@ void MorphBoxes::add(std::span<const Term> terms, int kdop, std::span<double> su
             }
             const double mean = // weights sum to 1
                 finite ? least + greatest_mean(bv, [&](std::size_t j) { return reach[j * k + d] - least; }) : infinite;
-            supports[i * k + d] = succ(supports[i * k + d] + mean);
+            const double sum = succ(supports[i * k + d] + mean);
+            supports[i * k + d] = std::abs(sum) < infinite ? sum : infinite; // what is no number hides nothing
         }
     }
 }
@@ -135,13 +140,15 @@ void MorphBoxes::add_error(const Term& term, double farthest, int kdop, std::spa
 {
     const auto k = static_cast<std::size_t>(kdop);
     const auto axes = axes_of(kdop);
-    std::vector<double> row_sum; // ‖A_j‖∞
+    std::vector<double> row_sum, shift; // ‖A_j‖∞, ‖t_j‖∞
     row_sum.reserve(term.maps.size());
+    shift.reserve(term.maps.size());
     for (const AffineMap& map : term.maps) {
         double most = 0;
         for (const auto& row : map.m)
             most = std::max(most, (std::abs(row[0]) + std::abs(row[1])) + std::abs(row[2]));
         row_sum.push_back(most);
+        shift.push_back(std::max({std::abs(map.m[0][3]), std::abs(map.m[1][3]), std::abs(map.m[2][3])}));
     }
     constexpr double least = 0x1p-1022; // products that underflow are off by less
     for (std::size_t i = 0; i < bvh_.bvs.size(); ++i) {
@@ -155,9 +162,13 @@ void MorphBoxes::add_error(const Term& term, double farthest, int kdop, std::spa
         if (!any)
             continue;
         const RestBv bv = bvh_.rest(i);
-        double size = 0;
-        for (const std::uint32_t j : bv.node)
+        double size = 0, away = 0;
+        for (const std::uint32_t j : bv.node) {
             size = std::max(size, row_sum[j]);
+            away = std::max(away, shift[j]);
+        }
+        // What is computed of displaced vertices may overflow on its way where nothing of the sum does.
+        const bool in_range = farthest + displaced < 0x1p1020 && size * (farthest + displaced) + away < 0x1p1020;
         const double factor =
             8 * (static_cast<double>(count(i)) + static_cast<double>(bv.node.size()) + 16) * unit_roundoff;
         const double coordinate = factor * (size * (farthest + displaced + least) + least);
@@ -166,7 +177,7 @@ void MorphBoxes::add_error(const Term& term, double farthest, int kdop, std::spa
             const double own = (std::abs(axis[0]) + std::abs(axis[1]) + std::abs(axis[2])) * coordinate;
             double& support = supports[i * k + d];
             support = succ(support + own);
-            if (!(support < infinite))
+            if (!in_range || !(support < infinite))
                 support = infinite;
         }
     }

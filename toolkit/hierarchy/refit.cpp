@@ -73,6 +73,9 @@ Refitter::Refitter(const Bvh& bvh, const DeformableSurface& surface, const Refit
     if (!is_kdop(options.kdop))
         throw std::invalid_argument("k must be " + kdop_names());
     require_default_arithmetic();
+    if (options.methods.contains(Method::vertices) &&
+        std::any_of(targets.begin(), targets.end(), [](const MorphTarget& target) { return !target.half.empty(); }))
+        throw std::invalid_argument("refit: by its vertices no surface is bounded whose displacements are boxes");
     if (options.methods == Method::vertices)
         return;
     RefitOptions others = options;

@@ -229,9 +229,11 @@ BonePath::BonePath(const Bone& bone, const std::vector<const Curve*>& curves, do
         const Eigen::Map<const Eigen::Matrix4d> m(bone.matrix.data());
         matrix_ = m.topLeftCorner<3, 3>();
         p_.path.c = {{m(0, 3), m(1, 3), m(2, 3)}};
-        matrix_magnitude_ = matrix_.norm();
-        const Eigen::SelfAdjointEigenSolver<Mat3> squared(matrix_.transpose() * matrix_, Eigen::EigenvaluesOnly);
-        matrix_norm_ = std::sqrt(std::max(squared.eigenvalues()[2], 0.0)) + 0x1p-40 * matrix_magnitude_;
+        matrix_magnitude_ = norm_of(matrix_);
+        const double scale = matrix_magnitude_ < 0x1p-450 ? 0x1p600 : 1; // squares must not vanish
+        const Mat3 scaled = scale * matrix_;
+        const Eigen::SelfAdjointEigenSolver<Mat3> squared(scaled.transpose() * scaled, Eigen::EigenvaluesOnly);
+        matrix_norm_ = std::sqrt(std::max(squared.eigenvalues()[2], 0.0)) / scale + 0x1p-40 * matrix_magnitude_;
     }
     for (const Curve* curve : curves) {
         CurvePiece piece = piece_of(curve->time_s, curve->interpolation, middle_s);

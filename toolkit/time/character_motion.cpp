@@ -105,7 +105,7 @@ public:
                 if (!target.half.empty()) // twice: what opposite displacements are rounded against
                     far += 2 * target.half[n];
                 for (const std::uint32_t j : surface.weights.of(target.vertex[n]).node)
-                    most[j] = std::max(most[j], far.norm() * wider);
+                    most[j] = std::max(most[j], norm_of(far) * wider);
             }
             for (const auto& [j, size] : most)
                 farthest_[j].push_back({i, size});
@@ -217,19 +217,19 @@ MotionInterval CharacterMotion::over(double a_s, double b_s) const
         // to 3; and without cancellation, of 0 to 2.
         const Reach& reach = reach_[j];
         const Mat3 b = linear(joint.inverse_bind);
-        const double of_bind = b.norm(); // Frobenius's, not less than that of any direction
+        const double of_bind = norm_of(b); // Frobenius's, not less than that of any direction
         Vec3 centre = apply(joint.inverse_bind, reach.centre);
         double radius = of_bind * (reach.radius + displaced[0]) * wider;
-        std::array<double, 4> r{centre.norm() + radius, of_bind * displaced[1] * wider, of_bind * displaced[2] * wider,
-                                of_bind * displaced[3] * wider};
-        std::array<double, 3> without{of_bind * (reach.centre.norm() + reach.radius + displaced_without[0]) +
-                                          shift(joint.inverse_bind).norm(),
+        std::array<double, 4> r{norm_of(centre) + radius, of_bind * displaced[1] * wider,
+                                of_bind * displaced[2] * wider, of_bind * displaced[3] * wider};
+        std::array<double, 3> without{of_bind * (norm_of(reach.centre) + reach.radius + displaced_without[0]) +
+                                          norm_of(shift(joint.inverse_bind)),
                                       of_bind * displaced_without[1] * wider, of_bind * displaced_without[2] * wider};
         r[0] = r[0] * wider + 0x1p-48 * without[0];
         std::size_t depth = 1;
         // How far an engine's rotations put it, and the lengths that its products add up, link by link.
-        double turned = 0, lengths = (of_bind * (reach.centre.norm() + reach.radius + displaced[0]) +
-                                      shift(joint.inverse_bind).norm()) *
+        double turned = 0, lengths = (of_bind * (norm_of(reach.centre) + reach.radius + displaced[0]) +
+                                      norm_of(shift(joint.inverse_bind))) *
                                      wider;
         for (std::int64_t at = joint.bone; at >= 0; at = bones_[static_cast<std::size_t>(at)].parent, ++depth) {
             const BonePath::Limits& l = limits[static_cast<std::size_t>(at)];
@@ -254,8 +254,8 @@ MotionInterval CharacterMotion::over(double a_s, double b_s) const
             }
             // Of the middle of the interval, plus the way from there.
             centre = jet.m[0] * centre + jet.p[0];
-            radius = times(jet.m[0].norm(), radius) * wider;
-            const double from_middle = centre.norm() + radius + length / 2 * r[1];
+            radius = times(norm_of(jet.m[0]), radius) * wider;
+            const double from_middle = norm_of(centre) + radius + length / 2 * r[1];
             if (from_middle < r[0])
                 r[0] = from_middle * wider + static_cast<double>(depth) * 2 * chain_error * without[0];
         }

@@ -36,7 +36,7 @@ double greatest_between(double first, double last, double bump, double path)
     if (std::isnan(path))
         path = infinite;
     const double most = std::max(first, last), least = std::min(first, last);
-    if (!(most < infinite) || std::isnan(least))
+    if (!(most < infinite) || std::isnan(first) || std::isnan(last))
         return infinite;
     // Each value below passes at most 6 roundings of what |first| + |last| + bump are the size of: the last term is at
     // most (last − first)/4, as last − first < 4 bump where it is taken.

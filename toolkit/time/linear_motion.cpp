@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 
 #include "cinch/environment.hpp"
 #include "toolkit/time/motion_interval.hpp"
+
+#include "toolkit/time/norm.hpp"
 
 namespace cinch {
 namespace {
@@ -67,12 +70,13 @@ struct Frames {
         // Between the ends every place moves along a straight line: no bump. What interpolation rounds, here and where
         // vertices are computed at times between, is 6u of either map.
         auto norm = [](const AffineMap& map, const Reach& of) {
-            double square = 0, shift = 0;
-            for (const auto& row : map.m) {
-                square += row[0] * row[0] + row[1] * row[1] + row[2] * row[2];
-                shift += row[3] * row[3];
+            std::array<double, 9> linear;
+            std::array<double, 3> shift;
+            for (std::size_t r = 0; r < 3; ++r) {
+                std::copy_n(map.m[r], 3, linear.begin() + static_cast<std::ptrdiff_t>(3 * r));
+                shift[r] = map.m[r][3];
             }
-            return std::sqrt(square) * (of.centre.norm() + of.radius) + std::sqrt(shift);
+            return norm_of(linear) * (norm_of(of.centre) + of.radius) + norm_of(shift);
         };
         out.limits.resize(out.first.size());
         for (std::size_t j = 0; j < out.limits.size(); ++j)
@@ -104,7 +108,7 @@ std::vector<Reach> reaches(const DeformableSurface& surface)
         if (out[j].any)
             out[j].centre = 0.5 * box[j].first + 0.5 * box[j].second;
     each([&](std::uint32_t j, const Vec3& y) {
-        out[j].radius = std::max(out[j].radius, (y - out[j].centre).norm() * wider);
+        out[j].radius = std::max(out[j].radius, norm_of(y - out[j].centre) * wider);
     });
     return out;
 }

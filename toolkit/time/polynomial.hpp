@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "toolkit/time/norm.hpp"
+
 namespace cinch {
 
 /// A path p(u) = Σ_i c_i u^i in N dimensions.
@@ -30,10 +32,7 @@ template <std::size_t N> struct Polynomial {
     {
         double out = 0;
         for (std::size_t i = c.size(); i-- > k;) {
-            double square = 0;
-            for (const double x : c[i])
-                square += x * x;
-            out = out * u + falling(i, k) * std::sqrt(square);
+            out = out * u + falling(i, k) * norm_of(c[i]);
         }
         return out;
     }
@@ -82,13 +81,9 @@ template <std::size_t N> struct Polynomial {
     double greatest_norm() const
     {
         double most = 0;
-        for (const auto& point : control()) {
-            double square = 0;
-            for (const double x : point)
-                square += x * x;
-            most = std::max(most, square);
-        }
-        return std::sqrt(most);
+        for (const auto& point : control())
+            most = std::max(most, norm_of(point));
+        return most;
     }
 
 private:

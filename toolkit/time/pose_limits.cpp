@@ -8,17 +8,22 @@
 
 #include "toolkit/time/bone_path.hpp"
 #include "toolkit/time/character_motion.hpp"
+#include "toolkit/time/norm.hpp"
 
 namespace cinch {
 namespace {
 
-constexpr double wider = 1 + 0x1p-40; // more than what a handful of roundings of sums of positive numbers lose
+constexpr double upward = 1 + 0x1p-40; // more than what a handful of roundings of sums of positive numbers lose
 
 // At least ‖M‖₂: that of M transposed times M is at most its greatest sum of a row.
 double greatest_stretch(const Eigen::Matrix3d& m)
 {
-    const Eigen::Matrix3d square = (m.transpose() * m).cwiseAbs();
-    return std::sqrt(square.rowwise().sum().maxCoeff()) * wider;
+    const double greatest = m.cwiseAbs().maxCoeff();
+    if (!(greatest > 0 && greatest < HUGE_VAL))
+        return greatest;
+    const double scale = std::exp2(-std::ilogb(greatest)); // squares must not vanish; 1022 is not reached below
+    const Eigen::Matrix3d scaled = m * std::min(scale, 0x1p1000), square = (scaled.transpose() * scaled).cwiseAbs();
+    return std::sqrt(square.rowwise().sum().maxCoeff()) / std::min(scale, 0x1p1000) * upward;
 }
 
 double times(double x, double y) { return x == 0 || y == 0 ? 0 : x * y; }
@@ -29,19 +34,19 @@ std::vector<double> displacements(const Character& character, std::span<const Po
 {
     std::vector<BonePath::Jet> jets;
     for (const Bone& bone : character.bones)
-        jets.push_back(BonePath(bone, {}, 0).at(0));
+        jets.push_back(BonePath(bone, {}, 0, {}).at(0));
     const std::vector<Reach> reach = reaches(surface);
     std::vector<double> displaced(reach.size(), 0); // by morph targets
     for (std::size_t i = 0; i < character.targets.size(); ++i) {
         std::vector<double> most(reach.size(), 0);
         const MorphTarget& target = character.targets[i];
         for (std::size_t n = 0; n < target.vertex.size(); ++n) {
-            const double far = target.displacement[n].norm() + (target.half.empty() ? 0 : target.half[n].norm());
+            const double far = norm_of(target.displacement[n]) + (target.half.empty() ? 0 : norm_of(target.half[n]));
             for (const std::uint32_t j : surface.weights.of(target.vertex[n]).node)
                 most[j] = std::max(most[j], far);
         }
         for (std::size_t j = 0; j < reach.size(); ++j)
-            displaced[j] += times(std::abs(character.target_weights[i]), most[j]) * wider;
+            displaced[j] += times(std::abs(character.target_weights[i]), most[j]) * upward;
     }
     std::vector<double> out;
     for (std::size_t j = 0; j < reach.size(); ++j) {
@@ -51,19 +56,20 @@ std::vector<double> displacements(const Character& character, std::span<const Po
             for (int c = 0; c < 3; ++c)
                 bind(r, c) = joint.inverse_bind.m[r][c];
         Vec3 centre = apply(joint.inverse_bind, reach[j].centre);
-        double radius = times(greatest_stretch(bind), reach[j].radius + displaced[j]) * wider, off = 0;
+        double radius = times(greatest_stretch(bind), reach[j].radius + displaced[j]) * upward, off = 0;
         for (std::int64_t at = joint.bone; at >= 0; at = character.bones[static_cast<std::size_t>(at)].parent) {
             const BonePath::Jet& jet = jets[static_cast<std::size_t>(at)];
             const PoseLimit& limit = limits[static_cast<std::size_t>(at)];
             const double stretch = greatest_stretch(jet.m[0]);
             const Vec3 turned = jet.m[0] * centre;
-            radius = times(stretch, radius) * wider;
+            radius = times(stretch, radius) * upward;
             const double chord = 2 * std::sin(std::min(limit.angle, std::numbers::pi) / 2);
-            off = (limit.move + times(stretch, off) + times(chord, turned.norm() + radius)) * wider;
+            off = (limit.move + times(stretch, off) + times(chord, norm_of(turned) + radius)) * upward;
             centre = turned + jet.p[0];
         }
-        // What the centres were off by, link by link, and times the chords: far less than 2^-30 of the way itself.
-        out.push_back(reach[j].any ? off * (1 + 0x1p-30) : 0);
+        // What the centres were off by, link by link: a few roundings each of what the points' distances add up to
+        // without cancelling, of which the still pose's own `error` has 2^-43 per link and uses a quarter.
+        out.push_back(reach[j].any ? off * upward : 0);
     }
     return out;
 }
