@@ -44,10 +44,11 @@ void add_audit(CLI::App& app, Run& run)
         ->option_text("N");
     add_shards(command, o.shards);
     add_output(command, o.output, Draws::nothing);
-    command.footer(R"(Each formula is written from its engine's documentation. It is refuted by a vertex
-that is outside at an instant, in real arithmetic; proven at all real times by
-the exact side, where one box stands for a whole clip or convexity decides; else
-it holds at the instants that were tried. Our own bounds are in the same table.
+    command.footer(R"(Each formula is written from its engine's documentation. It is refuted by a
+vertex that is outside at an instant, in real arithmetic; proven at all real
+times by the exact side, where one box stands for a whole clip or convexity
+decides; else it holds at the instants that were tried. Our own bounds are in
+the same table.
 
 Examples:
   cinch audit robot.glb                    all of its clips
@@ -56,8 +57,8 @@ Examples:
   cinch audit *.glb --out rows             clip by clip, and on after a Ctrl-C
   cinch audit --crowd 1000                 what boxes of crowds cost
 
-Exit status: 0 audited, whatever was found; 2 bad usage or input, 130 interrupted
-(results so far are printed).)");
+Exit status: 0 audited, whatever was found; 2 bad usage or input, 130
+interrupted (results so far are printed).)");
 }
 
 } // namespace cinch

@@ -132,8 +132,9 @@ TEST_CASE("boxes of crowds: the levels of the tree, leaves above included, cover
 TEST_CASE("boxes of crowds: the same bits for any number of threads and on every target of this machine")
 {
     Bodies bodies(200, 21, 1, 1, 3);
-    for (int n = 0; n < 6; ++n) // more bodies than a thread takes at once
-        bodies.e.frames.insert(bodies.e.frames.end(), bodies.e.frames.begin(), bodies.e.frames.begin() + 3);
+    const auto frames = bodies.e.frames;
+    for (int n = 0; n < 20; ++n) // more bodies than a thread takes at once
+        bodies.e.frames.insert(bodies.e.frames.end(), frames.begin(), frames.end());
     bodies.maps.clear();
     for (const auto& frame : bodies.e.frames)
         bodies.maps.insert(bodies.maps.end(), frame.begin(), frame.end());
