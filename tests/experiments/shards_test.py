@@ -106,8 +106,8 @@ with tempfile.TemporaryDirectory() as place:
     runs = [row for row in rows if "level" not in row]
     assert len(runs) == 3 * cells and all(row["root_ratio"] >= 1 and row["complete"] for row in runs)
     assert all(row["frames_done"] == row["frames"] == 1 for row in rows)
-    assert run("study", "-", "--json", input=json.dumps(plan).encode()).stdout.splitlines() == [
-        json.dumps(row, separators=(",", ":"), ensure_ascii=False).encode() for row in rows]
+    piped = run("study", "-", "--json", input=json.dumps(plan).encode()).stdout.splitlines()
+    assert [{**json.loads(line), "command": ""} for line in piped] == [{**row, "command": ""} for row in rows]
     run("study", file, "--shard", "0/7", status=2)  # without a folder
     run("study", file, "--out", file / "rows", status=2)
 verified = ["verify", "brain-3500" if full else "santa", "--nodes", 40, "--frames", 9, "--leaf", 16, "--kdop", 14]
