@@ -17,7 +17,9 @@ void add_audit(CLI::App& app, Run& run)
         crowd->output = options->output;
         run = [options, crowd] {
             if (options->inputs.empty() == (crowd->bodies == 0))
-                throw InputError("audit: files, or --crowd N, are needed");
+                throw InputError("audit needs files, or --crowd N");
+            if (crowd->bodies > 0 && !options->shards.folder.empty())
+                throw InputError("--out is of files; not with --crowd");
             return crowd->bodies > 0 ? audit_crowd(*crowd) : audit(*options);
         };
     });

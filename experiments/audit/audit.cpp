@@ -294,10 +294,7 @@ int audit(const AuditOptions& options)
             bodies.push_back(std::move(body));
     }
     catch_interrupt();
-    std::vector<std::pair<std::size_t, std::size_t>> cells; // body and clip
-    for (std::size_t b = 0; b < bodies.size(); ++b)
-        for (std::size_t clip = 0; clip < bodies[b].clips.size(); ++clip)
-            cells.emplace_back(b, clip);
+    const auto cells = all_clips(bodies);
     const CampaignRun run = run_campaign(campaign_of("audit", plan_of(bodies, options), cells.size()), options.shards,
                                          [&](std::size_t cell) {
                                              const TimedBody& body = bodies[cells[cell].first];

@@ -217,27 +217,24 @@ private:
 Json plan_of(const std::vector<TimedBody>& bodies, const std::vector<std::unique_ptr<Baker>>& bakers,
              const BakeOptions& options)
 {
-    Json all = Json::array();
-    std::uint64_t sum = checksum_of_nothing;
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-        all.push_back(to_json(bakers[i]->body()));
-        sum = checksum_of(bodies[i], sum);
-    }
-    return {{"bodies", all},
-            {"checksum", sum},
-            {"statement", options.input.poses.empty() ? statement_of(options.engine) : statement_of_poses},
-            {"joint_error", options.engine.joint_error},
-            {"method", name_of(options.bounds.methods)},
-            {"precision", options.bounds.precision == Precision::float32 ? "float" : "double"},
-            {"passes", options.bounds.passes},
-            {"kdop", options.bounds.kdop},
-            {"leaf", options.leaf},
-            {"interval", options.interval_s},
-            {"whole", options.whole},
-            {"tolerance", options.tolerance},
-            {"prove", options.prove},
-            {"samples", options.report ? options.samples : 0},
-            {"sabotage", static_cast<int>(options.sabotage)}};
+    std::vector<BakedBody> said;
+    for (const auto& of : bakers)
+        said.push_back(of->body());
+    Json plan = plan_of_bodies(bodies, said);
+    plan.update(Json{{"statement", options.input.poses.empty() ? statement_of(options.engine) : statement_of_poses},
+                     {"joint_error", options.engine.joint_error},
+                     {"method", name_of(options.bounds.methods)},
+                     {"precision", options.bounds.precision == Precision::float32 ? "float" : "double"},
+                     {"passes", options.bounds.passes},
+                     {"kdop", options.bounds.kdop},
+                     {"leaf", options.leaf},
+                     {"interval", options.interval_s},
+                     {"whole", options.whole},
+                     {"tolerance", options.tolerance},
+                     {"prove", options.prove},
+                     {"samples", options.report ? options.samples : 0},
+                     {"sabotage", static_cast<int>(options.sabotage)}});
+    return plan;
 }
 
 // --npz and --usd, of a body's clips.
@@ -284,12 +281,9 @@ int bake(const BakeOptions& options)
     refuse_what_does_not_go_together(options, bodies.size());
     catch_interrupt();
     std::vector<std::unique_ptr<Baker>> bakers;
-    std::vector<std::pair<std::size_t, std::size_t>> cells; // body and clip
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-        bakers.push_back(std::make_unique<Baker>(bodies[i], options));
-        for (std::size_t clip = 0; clip < bodies[i].clips.size(); ++clip)
-            cells.emplace_back(i, clip);
-    }
+    for (const TimedBody& body : bodies)
+        bakers.push_back(std::make_unique<Baker>(body, options));
+    const auto cells = all_clips(bodies);
     const CampaignRun run =
         run_campaign(campaign_of("bake", plan_of(bodies, bakers, options), cells.size()), options.shards,
                      [&](std::size_t cell) { return bakers[cells[cell].first]->bake(cells[cell].second); });

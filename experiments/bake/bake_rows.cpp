@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "experiments/input_checksum.hpp"
 #include "experiments/records/json_number.hpp"
 
 namespace cinch {
@@ -99,6 +100,17 @@ Json to_json(const BakedBody& body)
 {
     return {{"input", body.name},    {"report", body.report},   {"missing", body.missing}, {"fields", body.fields},
             {"levels", body.levels}, {"written", body.written}, {"clips", body.clips}};
+}
+
+Json plan_of_bodies(const std::vector<TimedBody>& bodies, const std::vector<BakedBody>& said)
+{
+    Json all = Json::array();
+    std::uint64_t sum = checksum_of_nothing;
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        all.push_back(to_json(said[i]));
+        sum = checksum_of(bodies[i], sum);
+    }
+    return {{"bodies", all}, {"checksum", sum}};
 }
 
 BakedBody baked_body_of(const Json& from)

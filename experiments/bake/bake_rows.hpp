@@ -39,6 +39,8 @@ struct BakedBody {
     std::size_t clips = 0;             ///< cells
 };
 nlohmann::ordered_json to_json(const BakedBody& body);
+/// The beginning of a plan: its bodies, each with what is said of it, and a checksum of all that moves them.
+nlohmann::ordered_json plan_of_bodies(const std::vector<TimedBody>& bodies, const std::vector<BakedBody>& said);
 BakedBody baked_body_of(const nlohmann::ordered_json& from);
 
 } // namespace cinch

@@ -2,6 +2,7 @@
 #include "experiments/bake/read_poses.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <numbers>
 #include <sstream>
@@ -69,8 +70,8 @@ PoseLimit limit_of(JsonFields fields, Bone* bone)
 std::vector<PoseLimit> read_poses(const std::string& file, Character& character)
 {
     std::ifstream in(file);
-    if (!in)
-        throw InputError(file + ": cannot be read");
+    if (!in || std::filesystem::is_directory(file))
+        throw InputError::in_file(file, std::filesystem::exists(file) ? "cannot be read" : "no such file");
     std::stringstream text;
     text << in.rdbuf();
     Json root;

@@ -155,6 +155,15 @@ std::uint64_t checksum_of(const TimedBody& body, std::uint64_t sum)
     return sum;
 }
 
+std::vector<std::pair<std::size_t, std::size_t>> all_clips(const std::vector<TimedBody>& bodies)
+{
+    std::vector<std::pair<std::size_t, std::size_t>> out;
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+        for (std::size_t clip = 0; clip < bodies[i].clips.size(); ++clip)
+            out.emplace_back(i, clip);
+    return out;
+}
+
 TimedMotion watched(TimedMotion motion, TimeSabotage how)
 {
     const double first_s = motion.first_s();

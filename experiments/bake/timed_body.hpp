@@ -40,6 +40,9 @@ struct TimedBody {
 /// InputError, as load_input does.
 std::vector<TimedBody> load_timed(const InputOptions& options, const Engine& engine = {});
 
+/// Every clip of every body, by their numbers: the cells of commands that go clip by clip.
+std::vector<std::pair<std::size_t, std::size_t>> all_clips(const std::vector<TimedBody>& bodies);
+
 /// Of all that moves a body, as checksum_of an Input. Throws Interrupted.
 std::uint64_t checksum_of(const TimedBody& body, std::uint64_t so_far);
 

@@ -89,19 +89,16 @@ private:
 Json plan_of(const std::vector<TimedBody>& bodies, const std::vector<std::unique_ptr<Prover>>& provers,
              const VerifyOptions& options)
 {
-    Json all = Json::array();
-    std::uint64_t sum = checksum_of_nothing;
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-        all.push_back(to_json(provers[i]->body()));
-        sum = checksum_of(bodies[i], sum);
-    }
-    return {{"bodies", all},
-            {"checksum", sum},
-            {"method", name_of(options.methods)},
-            {"precision", name_of(options.precision)},
-            {"passes", options.passes},
-            {"kdop", options.kdop},
-            {"leaf", options.leaf}};
+    std::vector<BakedBody> said;
+    for (const auto& of : provers)
+        said.push_back(of->body());
+    Json plan = plan_of_bodies(bodies, said);
+    plan.update(Json{{"method", name_of(options.methods)},
+                     {"precision", name_of(options.precision)},
+                     {"passes", options.passes},
+                     {"kdop", options.kdop},
+                     {"leaf", options.leaf}});
+    return plan;
 }
 
 void print_times(const Merged& all, const OutputOptions& options, const Provenance& from,
@@ -170,12 +167,9 @@ int verify_all_times(const VerifyOptions& options)
         throw InputError("--certificate with --times all is written in one run, without --out");
     catch_interrupt();
     std::vector<std::unique_ptr<Prover>> provers;
-    std::vector<std::pair<std::size_t, std::size_t>> cells; // body and clip
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-        provers.push_back(std::make_unique<Prover>(bodies[i], options));
-        for (std::size_t clip = 0; clip < bodies[i].clips.size(); ++clip)
-            cells.emplace_back(i, clip);
-    }
+    for (const TimedBody& body : bodies)
+        provers.push_back(std::make_unique<Prover>(body, options));
+    const auto cells = all_clips(bodies);
     const CampaignRun run =
         run_campaign(campaign_of("verify --times all", plan_of(bodies, provers, options), cells.size()), options.shards,
                      [&](std::size_t cell) { return provers[cells[cell].first]->prove_clip(cells[cell].second); });
