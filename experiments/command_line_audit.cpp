@@ -11,11 +11,14 @@ void add_audit(CLI::App& app, Run& run)
 {
     const auto options = std::make_shared<AuditOptions>();
     AuditOptions& o = *options;
+    const auto outside = std::make_shared<std::vector<std::string>>();
     CLI::App& command = *app.add_subcommand("audit", "what the bounds of engines do on your files");
     const auto crowd = std::make_shared<CrowdAuditOptions>();
-    command.callback([options, crowd, &run] {
+    command.callback([options, crowd, outside, &run] {
         crowd->output = options->output;
-        run = [options, crowd] {
+        run = [options, crowd, outside] {
+            for (const std::string& text : *outside)
+                options->outside.push_back(parse_outside(text));
             if (options->inputs.empty() == (crowd->bodies == 0))
                 throw InputError("audit needs files, or --crowd N");
             if (crowd->bodies > 0 && !options->shards.folder.empty())
@@ -37,6 +40,8 @@ void add_audit(CLI::App& app, Run& run)
                      wrapped("of a character: what is modelled, saying what is missing [refused]"));
     option("--samples", o.samples, "instants between two keys [4]")->check(CLI::Range(0, 100000))->option_text("N");
     option("--seconds", o.seconds, "of measuring times, per clip [0.2]")->check(within(0.001, 1e6))->option_text("X");
+    option("--outside", *outside, "another method, a shell command: frames in, bounds out (data/README.md)")
+        ->option_text("NAME=COMMAND...");
     option("--show", o.show, "print the counterexample of this number in place of the table")
         ->check(CLI::Range(1, 1000000000))
         ->option_text("K");
@@ -57,6 +62,7 @@ Examples:
   cinch audit robot.glb --clip Robot_Dance --show 1
   cinch audit *.glb --json > audit.jsonl
   cinch audit *.glb --out rows             clip by clip, and on after a Ctrl-C
+  cinch audit robot.glb --outside 'mine=./my-method --margin 0.01'
   cinch audit --crowd 1000                 what boxes of crowds cost
 
 Exit status: 0 audited, whatever was found; 2 bad usage or input, 130

@@ -51,7 +51,14 @@ Json plan_of(const std::vector<TimedBody>& bodies, const AuditOptions& options)
                                           body.clips.size(), body.input.surface.weights.node_count}));
         sum = checksum_of(body, sum);
     }
-    return {{"bodies", all}, {"checksum", sum}, {"samples", options.samples}, {"seconds", options.seconds}};
+    Json outside = Json::object();
+    for (const OutsideMethod& method : options.outside)
+        outside[method.name] = method.command;
+    return {{"bodies", all},
+            {"checksum", sum},
+            {"samples", options.samples},
+            {"seconds", options.seconds},
+            {"outside", outside}};
 }
 
 // What was found, a formula of a clip after the other.
@@ -206,12 +213,20 @@ void print_audit(const Merged& all, const OutputOptions& options, const Provenan
     fmt::print("{}\n", describe(from));
 }
 
+// Whether a view can compute it.
+bool is_drawn(const std::string& formula)
+{
+    const auto& all = engine_formulas();
+    return std::any_of(all.begin(), all.end(), [&](const EngineFormula& f) { return f.name == formula; });
+}
+
 // The character in the box that it is farthest outside of, at that time, to look at.
 Json view_of_worst(const std::vector<Found>& found, const AuditOptions& options)
 {
     const Found* worst = nullptr;
     for (const Found& f : found)
-        if (f.formula.worst && (!worst || f.formula.worst_share > worst->formula.worst_share))
+        if (f.formula.worst && is_drawn(f.formula.formula) &&
+            (!worst || f.formula.worst_share > worst->formula.worst_share))
             worst = &f;
     if (!worst)
         return {};
@@ -228,7 +243,7 @@ Json view_of_worst(const std::vector<Found>& found, const AuditOptions& options)
     request.partial = options.input.partial;
     request.formulas = {worst->formula.formula};
     for (const Found& f : found)
-        if (f.body.name == worst->body.name && f.clip == worst->clip && !f.formula.formula.starts_with("cinch") &&
+        if (f.body.name == worst->body.name && f.clip == worst->clip && is_drawn(f.formula.formula) &&
             f.formula.formula != worst->formula.formula)
             request.formulas.push_back(f.formula.formula);
     request.methods = {Method::best};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "experiments/audit/outside_method.hpp"
 #include "experiments/input.hpp"
 #include "experiments/records/run_campaign.hpp"
 #include "experiments/report/record_output.hpp"
@@ -9,10 +10,11 @@ namespace cinch {
 
 struct AuditOptions {
     std::vector<std::string> inputs;
-    InputOptions input;   ///< for each of them
-    int samples = 4;      ///< between two keys
-    double seconds = 0.2; ///< of measuring times, per clip
-    std::size_t show = 0; ///< the number of a counterexample to show; 0: the table
+    InputOptions input;                 ///< for each of them
+    std::vector<OutsideMethod> outside; ///< beside the formulas
+    int samples = 4;                    ///< between two keys
+    double seconds = 0.2;               ///< of measuring times, per clip
+    std::size_t show = 0;               ///< the number of a counterexample to show; 0: the table
     ShardOptions shards;
     OutputOptions output;
 };

@@ -8,6 +8,7 @@
 #include "cinch/refit.hpp"
 #include "exact/vertex_enclosure.hpp"
 #include "experiments/audit/exact_clip.hpp"
+#include "experiments/audit/outside_method.hpp"
 #include "experiments/bake/baked_clip.hpp"
 #include "experiments/baselines/engines/engine_character.hpp"
 #include "experiments/measure/race.hpp"
@@ -89,6 +90,7 @@ struct Audited {
     ReadyFormula formula;
     std::vector<EngineBound> bounds = {}; // at each instant
     bool touches = false;                 // the surface, but for rounding, at an instant
+    bool has_time = true;                 // of a bound, that says something
 
     // By what was confirmed, if it was.
     void refute(const std::optional<Counterexample>& found, const Instant& at)
@@ -198,6 +200,37 @@ void prove(const std::vector<Instant>& instants, const TimedBody& body, const Ti
 
 EngineBound box_of_supports(std::span<const double> s) { return {{-s[1], -s[3], -s[5]}, {s[0], s[2], s[4]}, {}}; }
 
+// The place among the instants of the maps that a formula gets, which are asked for in order.
+class WhichInstant {
+public:
+    explicit WhichInstant(const std::vector<Instant>& instants) : instants_(instants) {}
+
+    std::size_t operator()(std::span<const AffineMap> maps)
+    {
+        while (instants_[next_].maps.data() != maps.data())
+            next_ = (next_ + 1) % instants_.size();
+        return next_;
+    }
+
+private:
+    const std::vector<Instant>& instants_;
+    std::size_t next_ = 0;
+};
+
+std::vector<Audited> outside_methods(const TimedBody& body, const TimedClip& clip, const std::vector<Instant>& instants,
+                                     const AuditOptions& options)
+{
+    std::vector<Audited> out;
+    for (const OutsideMethod& method : options.outside) {
+        throw_if_interrupted();
+        auto at = [bounds = bounds_of(method, body, clip.motion.name, instants), which = WhichInstant(instants)](
+                      std::span<const AffineMap> maps) mutable { return bounds[which(maps)]; };
+        out.push_back({{method.name, "from outside"}, {false, false, at}});
+        out.back().has_time = false;
+    }
+    return out;
+}
+
 // Ours: the root's bound by a method, pose by pose; and the greatest over the whole clip.
 std::vector<Audited> own_formulas(const TimedBody& body, const TimedClip& clip, const std::vector<Instant>& instants,
                                   const ExactClip& exact)
@@ -210,10 +243,9 @@ std::vector<Audited> own_formulas(const TimedBody& body, const TimedClip& clip, 
         const auto refit = std::make_shared<Refitter>(exact.bvh(), body.input.surface, options, body.targets());
         const auto supports = std::make_shared<std::vector<double>>(exact.bvh().bvs.size() * 6);
         // A formula has the maps of an instant; weights come from the instant that has them.
-        auto at = [refit, supports, &instants, next = std::size_t{0}](std::span<const AffineMap> maps) mutable {
-            while (instants[next % instants.size()].maps.data() != maps.data())
-                ++next;
-            (*refit)(maps, instants[next % instants.size()].weights, *supports);
+        auto at = [refit, supports, &instants,
+                   which = WhichInstant(instants)](std::span<const AffineMap> maps) mutable {
+            (*refit)(maps, instants[which(maps)].weights, *supports);
             return box_of_supports(*supports);
         };
         out.push_back({{"cinch " + std::string(name_of(method)), "cinch::Refitter"}, {false, false, at}, {}});
@@ -238,7 +270,7 @@ void time(const std::vector<Instant>& instants, double seconds, std::vector<Audi
     std::vector<std::size_t> next(all.size());
     volatile double sink = 0;
     for (std::size_t i = 0; i < all.size(); ++i) {
-        if (all[i].formula.still)
+        if (all[i].formula.still || !all[i].has_time)
             continue;
         place.push_back(i);
         calls.emplace_back([&, i] {
@@ -260,16 +292,19 @@ std::vector<AuditedFormula> audit_clip(const TimedBody& body, const TimedClip& c
     std::vector<Instant> instants;
     for (const double t : times_of(clip.motion, options.samples)) {
         throw_if_interrupted();
-        instants.push_back({t, clip.motion.at(t), {}, character.places_at(t), {}});
+        std::vector<Vec3> places = character.places_at(t);
+        const EngineBound box = box_of(places);
+        instants.push_back({t, clip.motion.at(t), {}, std::move(places), box});
         if (clip.motion.weights)
             instants.back().weights = clip.motion.weights(t);
-        instants.back().box = box_of(instants.back().places);
     }
     const ExactClip exact(body, clip);
     std::vector<Audited> all;
     for (const EngineFormula& formula : engine_formulas())
         if (auto ready = formula.make(character))
             all.push_back({{formula.name, formula.used_by}, std::move(*ready), {}});
+    for (Audited& outside : outside_methods(body, clip, instants, options))
+        all.push_back(std::move(outside));
     for (Audited& own : own_formulas(body, clip, instants, exact))
         all.push_back(std::move(own));
     for (Audited& of : all) {

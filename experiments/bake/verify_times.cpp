@@ -3,6 +3,8 @@
 #include <optional>
 
 #include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
 
 #include "cinch/environment.hpp"
 #include "experiments/bake/bake_rows.hpp"
@@ -158,7 +160,9 @@ int verify_all_times(const VerifyOptions& options)
 {
     require_default_arithmetic();
     refuse_options_of_frames(options);
-    const Provenance from = provenance(options.threads, options.input.seed);
+    const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+    const Provenance from = provenance(threads, options.input.seed);
     const std::vector<TimedBody> bodies = load_timed(options.input);
     const std::string& certificate = options.certificate;
     if (bodies.size() > 1 && !certificate.empty())

@@ -17,12 +17,20 @@ namespace cinch {
 
 int run_child(const std::vector<std::string>& arguments, const std::filesystem::path& output)
 {
-    std::vector<char*> words{const_cast<char*>("cinch")};
-    for (const std::string& argument : arguments)
-        words.push_back(const_cast<char*>(argument.c_str()));
-    words.push_back(nullptr);
+    std::vector<std::string> words{"cinch"};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    return run_program("/proc/self/exe", words, "/dev/null", output);
+}
+
+int run_program(const std::string& program, const std::vector<std::string>& words, const std::filesystem::path& input,
+                const std::filesystem::path& output)
+{
+    std::vector<char*> pointers;
+    for (const std::string& word : words)
+        pointers.push_back(const_cast<char*>(word.c_str()));
+    pointers.push_back(nullptr);
     const int out = open(output.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, 0644),
-              in = open("/dev/null", O_RDONLY | O_CLOEXEC);
+              in = open(input.c_str(), O_RDONLY | O_CLOEXEC);
     if (out < 0 || in < 0)
         throw InputError::in_file(output.string(), "cannot be written");
     const pid_t parent = getpid(), child = fork();
@@ -34,7 +42,7 @@ int run_child(const std::vector<std::string>& arguments, const std::filesystem::
         sigprocmask(SIG_BLOCK, &ours, nullptr);
         if (getppid() != parent || dup2(in, STDIN_FILENO) < 0 || dup2(out, STDOUT_FILENO) < 0)
             _exit(127);
-        execv("/proc/self/exe", words.data());
+        execv(program.c_str(), pointers.data());
         _exit(127);
     }
     close(out);

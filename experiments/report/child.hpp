@@ -12,4 +12,8 @@ namespace cinch {
 /// signal if one ended it.
 int run_child(const std::vector<std::string>& arguments, const std::filesystem::path& output);
 
+/// The same of any program; `words` begin with its name.
+int run_program(const std::string& program, const std::vector<std::string>& words, const std::filesystem::path& input,
+                const std::filesystem::path& output);
+
 } // namespace cinch
