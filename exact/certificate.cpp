@@ -25,11 +25,24 @@ std::string hash_of_method(const Claim& claim, std::string_view shape)
     return hash.hex();
 }
 
-void add_frame(double time_s, std::span<const AffineMap> maps, Sha256& hash)
+void add_frame(const FramePose& pose, Sha256& hash)
 {
-    hash.add(time_s);
-    for (const AffineMap& map : maps)
+    hash.add(pose.time_s);
+    for (const AffineMap& map : pose.maps)
         hash.add(std::span<const double>(&map.m[0][0], 12));
+    hash.add(pose.weights);
+}
+
+std::string hash_of_targets(std::span<const MorphTarget> targets)
+{
+    Sha256 hash;
+    for (const MorphTarget& target : targets) {
+        hash.add(static_cast<std::uint32_t>(target.vertex.size()));
+        hash.add(std::span<const std::uint32_t>(target.vertex));
+        for (const Vec3& d : target.displacement)
+            hash.add(std::span<const double>(d.data(), 3));
+    }
+    return hash.hex();
 }
 
 } // namespace
@@ -44,6 +57,9 @@ struct CertificateWriter::Parts {
 
 void write_surface(const DeformableSurface& surface, const Bvh& bvh, const Claim& claim, const LineSink& sink)
 {
+    for (const MorphTarget& target : claim.targets)
+        if (!target.half.empty())
+            throw std::invalid_argument("write_surface: displacements are not exact");
     Line line(sink);
     const std::string_view shape = claim.shape == RestShape::aabb ? "aabb" : "obb";
     line.raw("{\"certificate\":\"").raw(format).raw("\",\"method\":\"").raw(name_of(claim.methods));
@@ -51,24 +67,36 @@ void write_surface(const DeformableSurface& surface, const Bvh& bvh, const Claim
     line.raw(",\"vertices\":").integer(surface.mesh.vertices.size());
     line.raw(",\"triangles\":").integer(surface.mesh.triangles.size());
     line.raw(",\"nodes\":").integer(surface.weights.node_count).raw(",\"bvs\":").integer(bvh.bvs.size());
+    if (!claim.targets.empty())
+        line.raw(",\"targets\":").integer(claim.targets.size());
     line.raw(",\"frames\":").integer(claim.frames).raw(",\"clip\":").text(claim.clip);
     line.raw(claim.missing.empty() ? ",\"partial\":false" : ",\"partial\":true").raw(",\"missing\":");
     line.array(claim.missing, [&](const std::string& part) { line.text(part); });
-    hash_surface(surface, hash_of_method(claim, shape), line);
+    hash_surface(surface, hash_of_method(claim, shape), line,
+                 claim.targets.empty() ? std::string() : hash_of_targets(claim.targets));
     line.raw("}").end();
     write_body(surface, bvh, line);
+    for (std::size_t i = 0; i < claim.targets.size(); ++i) {
+        line.raw("{\"target\":").integer(i).raw(",\"vertices\":");
+        write_displacements(claim.targets[i], line);
+    }
 }
 
-BoundCounts write_frame(const Claim& claim, std::size_t frame, double time_s, std::span<const AffineMap> maps,
-                        std::span<const double> supports, const FrameVerdict& verdict, const LineSink& sink)
+BoundCounts write_frame(const Claim& claim, std::size_t frame, const FramePose& pose, std::span<const double> supports,
+                        const FrameVerdict& verdict, const LineSink& sink)
 {
     const auto k = static_cast<std::size_t>(claim.kdop);
-    const bool has_lambda = claim.methods.within(box_methods) && claim.shape == RestShape::aabb;
-    if (frame >= claim.frames || supports.size() % k != 0 || verdict.failed.size() != supports.size())
+    const bool has_lambda =
+        claim.methods.within(box_methods) && claim.shape == RestShape::aabb && claim.targets.empty();
+    if (frame >= claim.frames || supports.size() % k != 0 || verdict.failed.size() != supports.size() ||
+        pose.weights.size() != claim.targets.size())
         throw std::invalid_argument("write_frame: not a frame of what is claimed");
     Line line(sink);
-    line.raw("{\"frame\":").integer(frame).raw(",\"time\":").number(time_s).raw(",\"maps\":");
-    line.array(maps, [&](const AffineMap& map) { line.numbers({&map.m[0][0], 12}); }).raw("}").end();
+    line.raw("{\"frame\":").integer(frame).raw(",\"time\":").number(pose.time_s).raw(",\"maps\":");
+    line.array(pose.maps, [&](const AffineMap& map) { line.numbers({&map.m[0][0], 12}); });
+    if (!claim.targets.empty())
+        line.raw(",\"morphs\":").numbers(pose.weights);
+    line.raw("}").end();
     for (std::size_t i = 0; i < supports.size() / k; ++i) {
         line.raw("{\"frame\":").integer(frame).raw(",\"bv\":").integer(i);
         line.raw(",\"bounds\":").numbers(supports.subspan(i * k, k));
@@ -106,7 +134,7 @@ std::string hash_of_transforms(const Clip& clip)
 {
     Sha256 hash;
     for (std::size_t f = 0; f < clip.frame_count(); ++f)
-        add_frame(clip.time_s(f), clip.frame(f), hash);
+        add_frame({clip.time_s(f), clip.frame(f), clip.weights(f)}, hash);
     return hash.hex();
 }
 
@@ -119,14 +147,13 @@ CertificateWriter::CertificateWriter(const DeformableSurface& surface, const Bvh
 
 CertificateWriter::~CertificateWriter() = default;
 
-void CertificateWriter::frame(double time_s, std::span<const AffineMap> maps, std::span<const double> supports,
-                              const FrameVerdict& verdict)
+void CertificateWriter::frame(const FramePose& pose, std::span<const double> supports, const FrameVerdict& verdict)
 {
     Parts& p = *parts_;
     if (supports.size() != p.supports)
         throw std::invalid_argument("CertificateWriter::frame: not a frame of what is claimed");
-    const BoundCounts counts = write_frame(p.claim, p.frames, time_s, maps, supports, verdict, p.line);
-    add_frame(time_s, maps, p.transforms);
+    const BoundCounts counts = write_frame(p.claim, p.frames, pose, supports, verdict, p.line);
+    add_frame(pose, p.transforms);
     p.counts.proven += counts.proven;
     p.counts.infinite += counts.infinite;
     p.counts.violated += counts.violated;

@@ -45,12 +45,21 @@ std::string escaped(const std::string& text)
 
 std::string as_shown(const std::string& text) { return nlohmann::json::parse(escaped(text)).get<std::string>(); }
 
-void hash_surface(const DeformableSurface& surface, const std::string& method, Line& line)
+void hash_surface(const DeformableSurface& surface, const std::string& method, Line& line, const std::string& targets)
 {
     line.raw(",\"sha256\":{\"positions\":\"").raw(hash_of_positions(surface));
     line.raw("\",\"triangles\":\"").raw(hash_of_triangles(surface));
     line.raw("\",\"weights\":\"").raw(hash_of_weights(surface));
-    line.raw("\",\"method\":\"").raw(method).raw("\"}");
+    line.raw("\",\"method\":\"").raw(method);
+    if (!targets.empty())
+        line.raw("\",\"targets\":\"").raw(targets);
+    line.raw("\"}");
+}
+
+void write_displacements(const MorphTarget& target, Line& line)
+{
+    line.integers(target.vertex).raw(",\"displacements\":");
+    line.array(target.displacement, [&](const Vec3& d) { line.numbers({d.data(), 3}); }).raw("}").end();
 }
 
 void write_body(const DeformableSurface& surface, const Bvh& bvh, Line& line)

@@ -72,8 +72,13 @@ private:
     std::string text_;
 };
 
-/// A certificate's "sha256" of positions, triangles and weights, with their names, and what follows of the method.
-void hash_surface(const DeformableSurface& surface, const std::string& method, Line& line);
+/// A certificate's "sha256" of positions, triangles and weights, with their names, and what follows of the method and,
+/// where there are any, of morph targets.
+void hash_surface(const DeformableSurface& surface, const std::string& method, Line& line,
+                  const std::string& targets = {});
 /// Its records of vertices, triangles and BVs.
 void write_body(const DeformableSurface& surface, const Bvh& bvh, Line& line);
+/// The rest of a morph target's record, after "vertices":.
+void write_displacements(const MorphTarget& target, Line& line);
+
 } // namespace cinch::exact

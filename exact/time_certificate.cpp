@@ -128,8 +128,8 @@ TimeCertificateWriter::TimeCertificateWriter(const DeformableSurface& surface, c
     for (std::size_t i = 0; i < character->targets.size(); ++i) {
         const MorphTarget& target = character->targets[i];
         line.raw("{\"target\":").integer(i).raw(",\"weight\":").number(character->target_weights[i]);
-        line.raw(",\"vertices\":").integers(target.vertex).raw(",\"displacements\":");
-        line.array(target.displacement, [&](const Vec3& d) { line.numbers({d.data(), 3}); }).raw("}").end();
+        line.raw(",\"vertices\":");
+        write_displacements(target, line);
     }
     parts_->hashes = false;
 }

@@ -37,13 +37,13 @@ void CertificateParts::write_surface(const DeformableSurface& surface, const Bvh
                [&](const exact::LineSink& line) { exact::write_surface(surface, bvh, claim, line); });
 }
 
-exact::BoundCounts CertificateParts::write_frame(const exact::Claim& claim, std::size_t frame, double time_s,
-                                                 std::span<const AffineMap> maps, std::span<const double> supports,
+exact::BoundCounts CertificateParts::write_frame(const exact::Claim& claim, std::size_t frame,
+                                                 const exact::FramePose& pose, std::span<const double> supports,
                                                  const exact::FrameVerdict& verdict) const
 {
     exact::BoundCounts counts;
     write_part(folder_, frame_file(frame), [&](const exact::LineSink& line) {
-        counts = exact::write_frame(claim, frame, time_s, maps, supports, verdict, line);
+        counts = exact::write_frame(claim, frame, pose, supports, verdict, line);
     });
     return counts;
 }

@@ -17,9 +17,8 @@ public:
 
     /// Each replaces what is there. Throw InputError where that cannot be, and Interrupted.
     void write_surface(const DeformableSurface& surface, const Bvh& bvh, const exact::Claim& claim) const;
-    exact::BoundCounts write_frame(const exact::Claim& claim, std::size_t frame, double time_s,
-                                   std::span<const AffineMap> maps, std::span<const double> supports,
-                                   const exact::FrameVerdict& verdict) const;
+    exact::BoundCounts write_frame(const exact::Claim& claim, std::size_t frame, const exact::FramePose& pose,
+                                   std::span<const double> supports, const exact::FrameVerdict& verdict) const;
     /// Throws InputError, which names it, where a part before the end is missing.
     void write_end(std::size_t frames, const exact::BoundCounts& counts, const std::string& transforms) const;
 

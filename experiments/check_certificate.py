@@ -20,6 +20,8 @@ below, or +infinity, which is counted apart. All comparisons are exact: doubles 
                  that hold the BV's vertices, derived here. (Not over oriented rest boxes, nor intersected with another
                  method.)
 
+Where morph targets displace the surface, every frame has their weights, and the vertices prove it alone.
+
 A certificate of bounds over time (bake, verify --times all) holds the skeleton, morph targets and curves of glTF, or
 frames, instead of transforms. Its intervals follow each other from the first to the last time of each clip; for every
 real time of each, every vertex in real arithmetic lies within the bound of each BV that holds it: between two keys it

@@ -166,11 +166,12 @@ exact::Claim claim_of(const Input& input, const VerifyOptions& options)
             .shape = options.rest_shape,
             .clip = input.clip.name,
             .frames = input.clip.frame_count(),
-            .missing = input.missing};
+            .missing = input.missing,
+            .targets = input.targets};
 }
 
 // Where the proof of a frame goes.
-using FrameSink = std::function<void(double time_s, std::span<const AffineMap> maps, std::span<const double> supports,
+using FrameSink = std::function<void(const exact::FramePose& pose, std::span<const double> supports,
                                      const exact::FrameVerdict& verdict)>;
 
 // Refits and proves every BV of one body in one frame; `supports` are its bounds.
@@ -191,7 +192,7 @@ VerifyTotals verify_frame(PreparedInput& prepared, const Input& input, const Ver
     }
     prepared.ladder.check(maps, weights, supports, totals.ladder);
     if (proof)
-        proof(input.clip.time_s(f), maps, supports, verdict);
+        proof({input.clip.time_s(f), maps, weights}, supports, verdict);
     add_levels(bvh, totals);
     add(bvh, verdict, options.kdop, {}, totals);
     totals.infinite = static_cast<std::size_t>(
@@ -286,8 +287,7 @@ int verify(const VerifyOptions& given)
     VerifyOptions options = given;
     if (!options.input.morphs.empty())
         throw InputError("--morphs is of all times; with --times all");
-    options.input.morph_frames = options.update == VerifiedUpdate::refit && options.certificate.empty() &&
-                                 options.vipr.empty() && !options.volume;
+    options.input.morph_frames = options.update == VerifiedUpdate::refit && options.vipr.empty() && !options.volume;
     if (options.leaf == 0)
         options.leaf = options.update == VerifiedUpdate::refit ? 1 : 16;
     const auto start = std::chrono::steady_clock::now();

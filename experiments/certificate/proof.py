@@ -5,8 +5,8 @@ import math
 import struct
 import sys
 
-from certificate.records import HEADER, Header, check_end, partial
-from certificate.surface import RestBounds, Surface
+from certificate.records import DISPLACED_HEADER, HEADER, DisplacedHeader, Header, check_end, partial
+from certificate.surface import RestBounds, Surface, Target
 from certificate.timed import HEADER as TIMED_HEADER, TimedChecker, TimedHeader
 from certificate.values import (WEIGHT_BITS, Rejected, bits_after_point, double, double_or_ratio, in_order,
                                 least_doubles, listed, require, scaled, whole)
@@ -15,14 +15,15 @@ from certificate.values import (WEIGHT_BITS, Rejected, bits_after_point, double,
 class FrameProof:
     """Everything about one frame that the bounds of its BVs are held against."""
 
-    def __init__(self, checker, maps):
+    def __init__(self, checker, maps, morphs):
         self.checker, self.maps = checker, maps
+        self.rest(morphs)
         map_bits = max(bits_after_point(x) for m in maps for x in m)
-        self.bits = map_bits + checker.rest_bits  # of positions
+        self.bits = map_bits + self.rest_bits  # of positions
         self.units = [[scaled(x, map_bits) for x in m] for m in maps]
         for m in self.units:
             for r in (3, 7, 11):
-                m[r] <<= checker.rest_bits
+                m[r] <<= self.rest_bits
         if checker.rest_bounds:  # per axis and simulation node: A^T axis, 2 axis . t
             def column(axis, m, s):
                 return sum(a * m[4 * r + s] for r, a in enumerate(axis) if a)
@@ -34,9 +35,29 @@ class FrameProof:
         self.supports = surface.merged(lambda vs: [max(all_of) for all_of in zip(*(of_vertex[v] for v in vs))],
                                        lambda a, b: list(map(max, a, b)))
 
+    def rest(self, morphs):
+        """Rest positions with displacements of these weights: in units, and in doubles as cinch adds them up."""
+        checker = self.checker
+        self.rest_bits, self.rest_units = checker.rest_bits, checker.rest_units
+        self.positions = checker.surface.positions
+        if not morphs:
+            return
+        weight_bits = max(map(bits_after_point, morphs))
+        by_bits = max((bits_after_point(x) for target in checker.targets for d in target.by for x in d), default=0)
+        self.rest_bits = max(checker.rest_bits, weight_bits + by_bits)
+        self.rest_units = [[x << (self.rest_bits - checker.rest_bits) for x in p] for p in checker.rest_units]
+        self.positions = [list(p) for p in checker.surface.positions]
+        for weight, target in zip(morphs, checker.targets):
+            units = scaled(weight, weight_bits) << (self.rest_bits - weight_bits - by_bits)
+            for v, d in zip(target.vertices, target.by):
+                exact, computed = self.rest_units[v], self.positions[v]
+                for r in range(3):
+                    exact[r] += units * scaled(d[r], by_bits)
+                    computed[r] = computed[r] + weight * d[r]
+
     def exact(self, v):
         """Per direction the least double that holds vertex v in real arithmetic."""
-        x, y, z = self.checker.rest_units[v]
+        x, y, z = self.rest_units[v]
         p = q = r = 0
         for j, u, _ in self.checker.surface.rows[v]:
             a, b, c, d, e, f, g, h, i, k, l, m = self.units[j]
@@ -47,7 +68,7 @@ class FrameProof:
 
     def computed(self, v):
         """Per direction the least double that holds vertex v as cinch computes it; infinite where a coordinate is."""
-        x, y, z = self.checker.surface.positions[v]
+        x, y, z = self.positions[v]
         p = q = r = 0.0
         for j, _, w in self.checker.surface.rows[v]:
             a, b, c, d, e, f, g, h, i, k, l, m = self.maps[j]
@@ -135,9 +156,12 @@ def checker_of(records, tie=None, progress=lambda text: None):
     """Of a whole certificate, proven; raises Rejected."""
     require(1e16 + 2.9999 == 10000000000000002.0 and sys.float_info.mant_dig == 53,
             "this machine's floats are no IEEE doubles")
-    record = records.expect("a header", HEADER, TIMED_HEADER)
+    record = records.expect("a header", HEADER, TIMED_HEADER, DISPLACED_HEADER)
     if record.keys() == TIMED_HEADER:
         return TimedChecker(records, TimedHeader(record), tie, progress)
+    if record.keys() == DISPLACED_HEADER:
+        require(not tie, "it has morph targets, which no file of --input has")
+        return Checker(records, DisplacedHeader(record), tie, progress)
     return Checker(records, Header(record), tie, progress)
 
 
@@ -148,6 +172,7 @@ class Checker:
         self.records, self.header, self.tie = records, header, tie
         progress("surface")
         self.surface = surface = Surface(header, records)
+        self.targets = Target.read(header, records)
         if tie:
             tie.surface(surface)
         self.used = bytearray(header.vertices)
@@ -166,7 +191,8 @@ class Checker:
                   ("transforms", transforms))
 
     def check_frame(self, f, transforms):
-        record = self.records.expect(f"frame {f}", {"frame", "time", "maps"})
+        keys = {"frame", "time", "maps", "morphs"} if self.targets else {"frame", "time", "maps"}
+        record = self.records.expect(f"frame {f}", keys)
         in_order("frame", record["frame"], f)
         time = double(record["time"])
         maps = listed(record["maps"], self.header.nodes, "maps")
@@ -174,9 +200,11 @@ class Checker:
         transforms.update(struct.pack("<d", time))
         for m in maps:
             transforms.update(struct.pack("<12d", *m))
+        morphs = [double(x) for x in listed(record["morphs"], len(self.targets), "morphs")] if self.targets else []
+        transforms.update(struct.pack(f"<{len(morphs)}d", *morphs))
         if self.tie:
             self.tie.frame(self.header.clip, time, maps)
-        proof = FrameProof(self, maps)
+        proof = FrameProof(self, maps, morphs)
         k, duality = self.header.directions, self.header.duality
         keys = {"frame", "bv", "bounds", "lambda"} if duality else {"frame", "bv", "bounds"}
         for i in range(self.header.bvs):

@@ -17,6 +17,7 @@ LONGEST_LINE = 1 << 28  # bytes; a record holds one BV or the transforms of one 
 HASHES = {"positions", "triangles", "weights", "method"}
 HEADER = {"certificate", "method", "rest_shape", "kdop", "vertices", "triangles", "nodes", "bvs", "frames", "clip",
           "partial", "missing", "sha256"}
+DISPLACED_HEADER = HEADER | {"targets"}
 
 
 def unique(pairs):
@@ -93,17 +94,21 @@ class Header:
         self.missing = [text(part, "a missing part") for part in listed(record["missing"], None, "missing")]
         require(type(record["partial"]) is bool and record["partial"] == bool(self.missing),
                 "partial is {}, but {} parts are missing", shown(record["partial"]), len(self.missing))
-        self.sha256 = hashes(record["sha256"], HASHES)
+        self.sha256 = hashes(record["sha256"], self.hash_names(record))
         method = hashlib.sha256()
         for part in self.hashed_texts(record):
             data = part.encode("utf-8", "surrogatepass")
             method.update(b"%d:%b" % (len(data), data))
         self.agree("method", method)
 
+    def hash_names(self, record):
+        return HASHES
+
     def shape(self, record):
         shape = record["rest_shape"]
         require(shape in ("aabb", "obb"), "rest_shape is {}", shown(shape))
         self.duality = set(record["method"].split("+")) <= BOX_METHODS and shape == "aabb"
+        self.targets = 0
 
     def hashed_texts(self, record):
         self.clip = text(record["clip"], "clip")
@@ -111,6 +116,18 @@ class Header:
 
     def agree(self, what, found):
         require(found.hexdigest() == self.sha256[what], "the SHA-256 of the {} is another than stated", what)
+
+
+class DisplacedHeader(Header):
+    """Of frames in which morph targets displace the surface: no rest box holds it, so there is no duality."""
+
+    def hash_names(self, record):
+        return HASHES | {"targets"}
+
+    def shape(self, record):
+        super().shape(record)
+        self.duality = False
+        self.targets = whole(record["targets"], 1, MOST_INDEX, "targets")
 
 
 def hashes(record, names):

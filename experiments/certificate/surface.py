@@ -83,6 +83,33 @@ class Surface:
         return out
 
 
+class Target:
+    """A morph target: ascending vertices, and by how much it displaces each at weight 1."""
+
+    def __init__(self, record, vertices):
+        self.vertices = [whole(v, 0, vertices - 1, "a vertex") for v in listed(record["vertices"], None, "vertices")]
+        require(all(a < b for a, b in zip(self.vertices, self.vertices[1:])),
+                "the vertices of a target do not ascend")
+        self.by = [[double(x) for x in listed(d, 3, "a displacement")]
+                   for d in listed(record["displacements"], len(self.vertices), "displacements")]
+
+    @staticmethod
+    def read(header, records):
+        """All of a certificate of frames."""
+        targets, hashed = [], hashlib.sha256()
+        for i in range(header.targets):
+            record = records.expect(f"target {i}", {"target", "vertices", "displacements"})
+            in_order("target", record["target"], i)
+            targets.append(target := Target(record, header.vertices))
+            n = len(target.vertices)
+            hashed.update(struct.pack(f"<I{n}I", n, *target.vertices))
+            for d in target.by:
+                hashed.update(struct.pack("<3d", *d))
+        if header.targets:
+            header.agree("targets", hashed)
+        return targets
+
+
 class RestBounds:
     """The least rest box and weight intervals of every BV: the weight space and the extrema of weak duality."""
 

@@ -6,7 +6,7 @@ import json
 from certificate.motion import Bone, Character, Frames
 from certificate.path import Curve
 from certificate.records import Header, check_end, partial
-from certificate.surface import Surface
+from certificate.surface import Surface, Target
 from certificate.times import IntervalProof, Vertices
 from certificate.values import Rejected, double, in_order, listed, plain, require, shown, text, whole
 
@@ -85,11 +85,8 @@ class TimedChecker:
             record = self.motion.expect(f"target {i}", {"target", "weight", "vertices", "displacements"})
             in_order("target", record["target"], i)
             weights.append(double(record["weight"]))
-            moved = [whole(v, 0, header.vertices - 1, "a vertex") for v in listed(record["vertices"], None, "vertices")]
-            require(all(a < b for a, b in zip(moved, moved[1:])), "the vertices of a target do not ascend")
-            by = [doubles(d, 3, "a displacement")
-                  for d in listed(record["displacements"], len(moved), "displacements")]
-            self.targets.append((moved, by))
+            target = Target(record, header.vertices)
+            self.targets.append((target.vertices, target.by))
         require(bones or not header.targets, "morph targets without bones")
         return Character(bones, joints, weights) if bones else None
 

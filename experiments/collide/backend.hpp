@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cinch/collider.hpp"
+#include "experiments/collide/rest_trees.hpp"
 #include "experiments/input.hpp"
 
 namespace cinch {
@@ -29,6 +30,8 @@ public:
 
     std::size_t frames() const { return bodies[0].clip.frame_count(); }
     std::span<const AffineMap> maps(std::size_t body, std::size_t frame) const { return maps_[body][frame]; }
+
+    mutable RestTrees trees; ///< while backends are built
 
 private:
     std::vector<std::vector<Clip::Frame>> maps_; ///< by body and frame

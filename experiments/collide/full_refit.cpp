@@ -45,8 +45,8 @@ public:
     FullRefit(const CollideScene& scene, bool single) : positions_(scene)
     {
         for (const Input& body : scene.bodies) {
-            const Bvh bvh = single ? build_bvh(body.surface, 1, RestDetail::boxes)
-                                   : build_bvh(body.surface, ClusterSize{16, 16}, RestDetail::boxes);
+            const Bvh& bvh =
+                scene.trees.of(body.surface, single ? ClusterSize{1, 3} : ClusterSize{16, 16}, RestDetail::boxes);
             Tree& tree = trees_.emplace_back();
             tree.triangle = bvh.triangle;
             for (const Bv& bv : bvh.bvs) {

@@ -102,6 +102,7 @@ std::vector<Measured> measure(const CollideScene& scene, const std::vector<Backe
             all[k].out.backend = kinds[k].name;
             progress.done(k + 1);
         }
+        scene.trees.forget();
     }
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                     static_cast<std::size_t>(options.threads));

@@ -14,9 +14,7 @@ public:
         const RestDetail detail = options.methods.within(box_methods) ? RestDetail::boxes : RestDetail::inner;
         for (const Input& body : scene.bodies) { // the trees keep what they need
             throw_if_interrupted();
-            collider_.add(leaf.triangles == 1 ? build_bvh(body.surface, 1, detail)
-                                              : build_bvh(body.surface, leaf, detail),
-                          body.surface);
+            collider_.add(Bvh(scene.trees.of(body.surface, leaf, detail)), body.surface);
         }
     }
     void evaluate(std::size_t frame) override

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "cinch/surface.hpp"
+#include "cinch/io.hpp"
 #include "experiments/guard_surface.hpp"
 #include "experiments/report/whole_file.hpp"
 #include "experiments/shipped.hpp"
@@ -49,6 +49,7 @@ FoundScene find_scene(const std::string& name, const SceneChanges& changes)
         found.scene = parse_scene(text, named, folder);
     }
     Scene& scene = found.scene;
+    scene.decoders = &decompression();
     if (changes.nodes) {
         bool any = false;
         for (SceneBody& body : scene.bodies)

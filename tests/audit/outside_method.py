@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""outside_method.py MARGIN|ball|short|odd: a method for `cinch audit --outside`, from frames to bounds (data/README.md):
-the box of the vertices in each frame with so much of a margin; a ball around it; one line too few; one that is none."""
+"""outside_method.py MARGIN|ball|short|odd: a method for `cinch audit --outside`, frames in, bounds out: the box of the
+vertices in each frame with a margin, or a ball around it; a line too few; a line that is none."""
 import json, math, sys
 
 what = sys.argv[1]

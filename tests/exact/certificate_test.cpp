@@ -47,14 +47,14 @@ TEST_CASE("a certificate counts its bounds, says what is missing, and has an end
     CHECK(header["sha256"]["method"] == method.hex());
     CHECK(lines.size() == 1 + e.surface.mesh.vertices.size() + e.surface.mesh.triangles.size() + bvh.bvs.size());
 
-    writer.frame(0.5, e.frames[1], supports, good);
+    writer.frame({0.5, e.frames[1]}, supports, good);
     CHECK_THROWS_AS(writer.end(), std::logic_error);
     supports[3] = std::numeric_limits<double>::infinity();
     supports[7] -= 10;
     FrameVerdict bad = Verifier(e.surface, bvh).check(e.frames[1], Method::limited, 6, supports);
     REQUIRE(bad.failed[7] != 0);
-    writer.frame(1, e.frames[1], supports, bad);
-    CHECK_THROWS_AS(writer.frame(2, e.frames[1], supports, bad), std::invalid_argument);
+    writer.frame({1, e.frames[1]}, supports, bad);
+    CHECK_THROWS_AS(writer.frame({2, e.frames[1]}, supports, bad), std::invalid_argument);
     writer.end();
     const json end = lines.back();
     CHECK(end["proven"] == 2 * supports.size() - 2);
@@ -79,7 +79,7 @@ TEST_CASE("only methods that are proven by duality have lambdas")
             CertificateWriter writer(e.surface, bvh, {methods, 14, shape, "", 1, {}},
                                      [&](std::string_view line) { lines.push_back(json::parse(line)); });
             CHECK(lines.front()["partial"] == false);
-            writer.frame(0, e.frames[1], supports, verdict);
+            writer.frame({0, e.frames[1]}, supports, verdict);
             CHECK(lines.back().contains("lambda") == (methods.within(box_methods) && shape == RestShape::aabb));
         }
 }

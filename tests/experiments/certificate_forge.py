@@ -44,12 +44,21 @@ def sealed(records):
     for i in triangles:
         sha["triangles"].update(struct.pack("<3I", *records[i]["vertices"]))
     for i in frames:
-        sha["transforms"].update(doubles([records[i]["time"]]) + b"".join(map(doubles, records[i]["maps"])))
+        sha["transforms"].update(doubles([records[i]["time"]]) + b"".join(map(doubles, records[i]["maps"]))
+                                 + doubles(records[i].get("morphs", [])))
+    targets = of(records, "target")
+    if targets:
+        sha["targets"] = hashlib.sha256()
+        for i in targets:
+            n = len(records[i]["vertices"])
+            sha["targets"].update(struct.pack(f"<I{n}I", n, *records[i]["vertices"])
+                                  + b"".join(map(doubles, records[i]["displacements"])))
+        first["targets"] = len(targets)
     for part in ("cinch 2", first["method"], first["rest_shape"], str(first["kdop"]), first["clip"], *first["missing"]):
         sha["method"].update(b"%d:%b" % (len(in_utf8(part)), in_utf8(part)))
     bvs = [i for i in of(records, "bv") if "bounds" not in records[i]]
     first.update(vertices=len(vertices), triangles=len(triangles), frames=len(frames), bvs=len(bvs))
-    first["sha256"] = {name: sha[name].hexdigest() for name in ("positions", "triangles", "weights", "method")}
+    first["sha256"] = {name: sha[name].hexdigest() for name in sha if name != "transforms"}
     infinite = sum(records[i]["bounds"].count("inf") for i in bounds)
     proven = sum(len(records[i]["bounds"]) for i in bounds) - infinite
     last.update(frames=len(frames), infinite=infinite, proven=proven, violated=0)

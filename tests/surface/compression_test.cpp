@@ -2,13 +2,17 @@
 // What Draco and meshoptimizer packed is read as what it was.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <functional>
 
 #include <draco/compression/decode.h>
 #include <draco/compression/encode.h>
 #include <draco/mesh/triangle_soup_mesh_builder.h>
 #include <meshoptimizer.h>
+#include <unistd.h>
 
+#include "cinch/simulate.hpp"
 #include "tests/surface/gltf_example.hpp"
 #include "toolkit/surface/text_scan.hpp"
 
@@ -260,6 +264,28 @@ TEST_CASE("what Draco packed is read as what it was")
     for (const Vec3& v : c.mesh.vertices)
         longest = std::max(longest, v[1]);
     CHECK(std::abs(longest - 0.1 * (vertices - 1)) < 20 * 0x1p-13);
+}
+
+TEST_CASE("a scene whose body is packed is the one whose body is not, with decoders")
+{
+    const Strip s = strip();
+    const auto folder = std::filesystem::temp_directory_path() / ("cinch-packed-" + std::to_string(getpid()));
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / "plain.gltf") << document(s, false).text();
+    std::ofstream(folder / "packed.gltf") << draco_document(s, false, 0).text();
+    auto simulation = [&](const std::string& file, const Decompression* decoders) {
+        const json scene = {{"duration", 1}, {"bodies", {{{"name", "strip"}, {"surface", file}, {"nodes", 12}}}}};
+        return SceneSimulation(scene.dump(), "scene.json", folder, decoders);
+    };
+    const SceneSimulation plain = simulation("plain.gltf", nullptr),
+                          packed = simulation("packed.gltf", &decompression());
+    const TriangleMesh &a = plain.surface(0)->mesh, &b = packed.surface(0)->mesh;
+    REQUIRE(a.triangles.size() == b.triangles.size());
+    for (std::size_t t = 0; t < a.triangles.size(); ++t) // the order of vertices may differ
+        for (std::size_t c = 0; c < 3; ++c)
+            CHECK(a.vertices[a.triangles[t][c]] == b.vertices[b.triangles[t][c]]);
+    CHECK_THROWS_WITH(simulation("packed.gltf", nullptr), Catch::Contains("is compressed"));
+    std::filesystem::remove_all(folder);
 }
 
 TEST_CASE("packed data that is damaged is refused, and never read past its end")

@@ -6,13 +6,22 @@
 namespace cinch {
 namespace {
 
-BodyId add_own(Collider::Parts& parts, Bvh&& bvh, const DeformableSurface& surface, const LazyOptions& own)
+BodyId add_own(Collider::Parts& parts, Bvh&& bvh, const DeformableSurface& surface, const LazyOptions& own,
+               std::span<const MorphTarget> targets = {})
 {
     if (own.methods.within(kernel_methods)) // then the tree copies what it needs of its BVH
-        return parts.add(bvh, nullptr, surface, own);
+        return parts.add(bvh, nullptr, surface, own, targets);
     auto kept = std::make_unique<const Bvh>(std::move(bvh));
     const Bvh& there = *kept;
-    return parts.add(there, std::move(kept), surface, own);
+    return parts.add(there, std::move(kept), surface, own, targets);
+}
+
+// With the leaf size and rest data that queries want.
+BodyId add_built(Collider::Parts& parts, const DeformableSurface& surface, const LazyOptions& own,
+                 std::span<const MorphTarget> targets = {})
+{
+    const RestDetail detail = need(own.methods, RestNeed::local) ? RestDetail::inner : RestDetail::boxes;
+    return add_own(parts, build_bvh(surface, ClusterSize{own.lanes, own.lanes}, detail), surface, own, targets);
 }
 
 } // namespace
@@ -22,11 +31,14 @@ Collider::~Collider() = default;
 Collider::Collider(Collider&&) noexcept = default;
 Collider& Collider::operator=(Collider&&) noexcept = default;
 
-BodyId Collider::add(const DeformableSurface& surface) { return add(surface, parts_->options()); }
+BodyId Collider::add(const DeformableSurface& surface) { return add_built(*parts_, surface, parts_->options()); }
 BodyId Collider::add(const DeformableSurface& surface, const LazyOptions& own)
 {
-    const RestDetail detail = need(own.methods, RestNeed::local) ? RestDetail::inner : RestDetail::boxes;
-    return add_own(*parts_, build_bvh(surface, ClusterSize{own.lanes, own.lanes}, detail), surface, own);
+    return add_built(*parts_, surface, own);
+}
+BodyId Collider::add(const DeformableSurface& surface, std::span<const MorphTarget> targets)
+{
+    return add_built(*parts_, surface, parts_->options(), targets);
 }
 BodyId Collider::add(const Bvh& bvh, const DeformableSurface& surface)
 {

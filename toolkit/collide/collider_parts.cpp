@@ -24,14 +24,14 @@ double outward(double x) { return std::isnan(x) ? infinite : x; }
 } // namespace
 
 BodyId Collider::Parts::add(const Bvh& bvh, std::unique_ptr<const Bvh> own_bvh, const DeformableSurface& surface,
-                            const LazyOptions& own)
+                            const LazyOptions& own, std::span<const MorphTarget> targets)
 {
     if (own.kdop != options_.kdop || own.lanes != options_.lanes || own.keep_cut != options_.keep_cut)
         throw std::invalid_argument("Collider::add: kdop, lanes and keep_cut must be those of the collider");
     bodies_.push_back({std::move(own_bvh), &surface});
     ids_.push_back(next_id_);
     try {
-        trees_.emplace_back(bvh, surface, own);
+        trees_.emplace_back(bvh, surface, own, targets);
     } catch (...) { // as if nothing had been added
         bodies_.pop_back();
         ids_.pop_back();

@@ -23,7 +23,7 @@ public:
     explicit Parts(const LazyOptions& options) : options_(options) {}
 
     BodyId add(const Bvh& bvh, std::unique_ptr<const Bvh> own_bvh, const DeformableSurface& surface,
-               const LazyOptions& own);
+               const LazyOptions& own, std::span<const MorphTarget> targets = {});
     void remove(BodyId body);
     void set_filter(std::function<bool(BodyId, BodyId)> wanted) { wanted_ = std::move(wanted); }
     void update(std::span<const BodyFrame> frames);

@@ -10,6 +10,7 @@
 #include <hwy/cache_control.h>
 
 #include "cinch/bounds.hpp"
+#include "cinch/deform.hpp"
 #include "cinch/environment.hpp"
 #include "toolkit/bounds/rounding.hpp"
 #include "toolkit/deform/parallel.hpp"
@@ -42,9 +43,11 @@ bool is_known(const AffineMap& map, const Vec3& absolute)
 
 } // namespace
 
-LazyRefit::LazyRefit(const Bvh& bvh, const DeformableSurface& surface, const LazyOptions& options)
+LazyRefit::LazyRefit(const Bvh& bvh, const DeformableSurface& surface, const LazyOptions& options,
+                     std::span<const MorphTarget> targets)
     : surface_(surface), options_(options), bounder_(bvh, surface, refit_options(options), Bounder::Leaves::left_out),
-      leaves_(pack_leaves(bvh, surface, bounder_.rest().origin, options.lanes)), triangle_(bvh.triangle)
+      leaves_(pack_leaves(bvh, surface, bounder_.rest().origin, options.lanes)), triangle_(bvh.triangle),
+      targets_(targets)
 {
     links_.resize(bvh.bvs.size());
     std::uint32_t leaf = 0;
@@ -68,20 +71,25 @@ std::size_t LazyRefit::bytes() const
     auto size = [](const auto& all) { return all.capacity() * sizeof(all[0]); };
     return bounder_.bytes() + leaves_.bytes() + size(links_) + size(triangle_) + size(influencing_) + size(dops_) +
            size(slots_) + size(slot_of_) + size(expanded_) + size(before_) + size(wanted_) + size(jobs_) +
-           size(wanted_leaves_);
+           size(wanted_leaves_) + size(displaced_) + size(placed_);
 }
 
 void LazyRefit::begin(const BodyFrame& frame)
 {
     now_ = frame;
-    if (frame.positions.empty()) {
+    if (frame.positions.empty() && frame.weights.size() != targets_.size())
+        throw std::invalid_argument("LazyRefit::begin: one weight per morph target is needed");
+    if (frame.positions.empty() &&
+        std::any_of(frame.weights.begin(), frame.weights.end(), [](double a) { return a != 0; }))
+        displace_all();
+    if (now_.positions.empty()) {
         const std::size_t unbounded = bounder_.begin(frame.maps);
         origin_ = bounder_.maps().origin;
         known_ = unbounded == 0 || std::all_of(influencing_.begin(), influencing_.end(), [&](std::uint32_t j) {
                      return is_known(frame.maps[j], bounder_.rest().absolute);
                  });
     } else {
-        begin_with(frame.positions);
+        begin_with(now_.positions);
     }
     counts_ = {};
     slots_used_ = 0;
@@ -104,7 +112,7 @@ void LazyRefit::begin(const BodyFrame& frame)
     for (const std::uint32_t bv : before_)
         for (std::uint32_t c = links_[bv].child; c < links_[bv].child + 2; ++c)
             touched += links_[c].is_leaf();
-    full_ = !frame.positions.empty() || options_.update == Update::full ||
+    full_ = !now_.positions.empty() || options_.update == Update::full ||
             (options_.update == Update::automatic && 2 * touched > leaves_.leaves.size());
     if (full_)
         return refit_all();
@@ -118,6 +126,18 @@ void LazyRefit::begin(const BodyFrame& frame)
                 note(c);
     supply();
     std::for_each(before_.rbegin(), before_.rend(), [&](std::uint32_t bv) { merge(bv); }); // children before parents
+}
+
+// From here on the frame is one of given positions.
+void LazyRefit::displace_all()
+{
+    if (now_.maps.size() != surface_.weights.node_count)
+        throw std::invalid_argument("LazyRefit::begin: one transform per simulation node is needed");
+    displaced_ = surface_.mesh.vertices;
+    displace(targets_, now_.weights, displaced_);
+    placed_.resize(displaced_.size());
+    evaluate(displaced_, surface_.weights, now_.maps, placed_);
+    now_.positions = placed_;
 }
 
 // Relative to the first vertex, on the grid of projected maps.

@@ -21,13 +21,13 @@ public:
     static constexpr std::uint32_t no_slot = ~0u;
 
     /// The surface must stay as it is, and alive; so must the BVH for methods without kernels (sphere, corners,
-    /// vertices). Throws std::invalid_argument for leaves that have not enough lanes and a k that is none.
-    LazyRefit(const Bvh& bvh, const DeformableSurface& surface, const LazyOptions& options);
-    LazyRefit(const Bvh&&, const DeformableSurface&, const LazyOptions&) = delete; ///< both are referred to
-    LazyRefit(const Bvh&, const DeformableSurface&&, const LazyOptions&) = delete;
+    /// vertices), and the targets. Throws std::invalid_argument for leaves that have not enough lanes and a k that is
+    /// none.
+    LazyRefit(const Bvh& bvh, const DeformableSurface& surface, const LazyOptions& options,
+              std::span<const MorphTarget> targets = {});
 
     /// Begins a frame; what it points to must stay alive through it. Throws std::invalid_argument unless there is one
-    /// transform per simulation node, or one position per vertex.
+    /// transform per simulation node and one weight per morph target, or one position per vertex.
     void begin(const BodyFrame& frame);
 
     bool empty() const { return links_.empty(); }
@@ -76,6 +76,7 @@ public:
 
 private:
     void begin_with(std::span<const Vec3> positions);
+    void displace_all();
     void place_leaves();
     void note(std::uint32_t bv);
     void merge(std::uint32_t bv);
@@ -94,6 +95,9 @@ private:
     AlignedVector<float> slots_;         ///< of the leaves deformed in this frame, in order of wanting
     std::vector<std::uint32_t> slot_of_; ///< per leaf
     std::size_t slots_used_ = 0;
+
+    std::span<const MorphTarget> targets_;
+    std::vector<Vec3> displaced_, placed_; ///< vertices with morph targets, at rest and in this frame
 
     BodyFrame now_;
     Vec3 origin_ = Vec3::Zero();

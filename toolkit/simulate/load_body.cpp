@@ -135,7 +135,7 @@ std::vector<Vec3> lattice(const SceneBody& body)
 
 } // namespace
 
-LoadedBody load_body(const SceneBody& body, const std::string& file, MeshCache& meshes)
+LoadedBody load_body(const SceneBody& body, const std::string& file, const Decompression* decoders, MeshCache& meshes)
 {
     LoadedBody loaded;
     TriangleMesh& mesh = loaded.surface.mesh;
@@ -144,7 +144,7 @@ LoadedBody load_body(const SceneBody& body, const std::string& file, MeshCache& 
         if (body.size_m > 0)
             complain(file, body, "size", "a character keeps its own size");
         try {
-            character = read_gltf(body.surface);
+            character = read_gltf(body.surface, Coverage::whole, Morphs::missing, decoders);
             if (character->animations.empty())
                 rest_pose(*character); // says what is missing in it
         } catch (const InputError& error) {

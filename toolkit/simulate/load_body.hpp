@@ -23,7 +23,7 @@ struct LoadedBody {
 /// Meshes that several bodies of a scene share, by the name of their surface.
 using MeshCache = std::map<std::string, MeshFile>;
 
-/// Throws InputError with file and path.
-LoadedBody load_body(const SceneBody& body, const std::string& file, MeshCache& meshes);
+/// Throws InputError with file and path. `decoders`: of what is compressed, or null.
+LoadedBody load_body(const SceneBody& body, const std::string& file, const Decompression* decoders, MeshCache& meshes);
 
 } // namespace cinch

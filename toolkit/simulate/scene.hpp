@@ -12,6 +12,8 @@
 
 namespace cinch {
 
+struct Decompression;
+
 /// An effect of a scene.
 struct SceneEffect {
     const EffectKind* kind = nullptr;
@@ -51,6 +53,7 @@ struct Scene {
     Integration integration;
     std::vector<SceneBody> bodies;
     std::vector<SceneEffect> effects;
+    const Decompression* decoders = nullptr; ///< for files of its bodies
 };
 
 /// A scene from JSON text in the layout of data/scenes/schema.json. `file` is for messages. Throws InputError naming

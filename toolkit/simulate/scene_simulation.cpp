@@ -44,19 +44,19 @@ private:
 struct SceneSimulation::Parts {
     Simulation simulation;
 
-    Parts(std::string_view json, const std::string& name, const std::filesystem::path& folder)
-        : simulation(parse_scene(json, name, folder.string()), name)
-    {
-    }
+    explicit Parts(Scene&& scene, const std::string& name) : simulation(std::move(scene), name) {}
 };
 
-SceneSimulation::SceneSimulation(const std::filesystem::path& scene)
-    : SceneSimulation(read_bytes(scene), scene.string(), scene.parent_path())
+SceneSimulation::SceneSimulation(const std::filesystem::path& scene, const Decompression* decoders)
+    : SceneSimulation(read_bytes(scene), scene.string(), scene.parent_path(), decoders)
 {
 }
-SceneSimulation::SceneSimulation(std::string_view json, const std::string& name, const std::filesystem::path& folder)
-    : parts_(std::make_unique<Parts>(json, name, folder))
+SceneSimulation::SceneSimulation(std::string_view json, const std::string& name, const std::filesystem::path& folder,
+                                 const Decompression* decoders)
 {
+    Scene scene = parse_scene(json, name, folder.string());
+    scene.decoders = decoders;
+    parts_ = std::make_unique<Parts>(std::move(scene), name);
 }
 SceneSimulation::~SceneSimulation() = default;
 SceneSimulation::SceneSimulation(SceneSimulation&&) noexcept = default;

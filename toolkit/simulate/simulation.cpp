@@ -39,7 +39,7 @@ bool follows_clip(const Scene& scene, const SceneBody& body)
 
 Simulation::Body built(const Scene& scene, const SceneBody& spec, const std::string& file, MeshCache& meshes)
 {
-    LoadedBody loaded = load_body(spec, file, meshes);
+    LoadedBody loaded = load_body(spec, file, scene.decoders, meshes);
     MeshlessBody body = discretised(loaded, spec, file);
     std::vector<std::string> notes = loaded.notes;
     notes.insert(notes.end(), body.notes.begin(), body.notes.end());

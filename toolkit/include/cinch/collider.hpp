@@ -38,6 +38,8 @@ struct BodyFrame {
     std::span<const AffineMap> maps;   ///< one per simulation node
     std::span<const Vec3> positions{}; ///< of all vertices, where they are there anyway: then these are the vertices,
                                        ///< and the update is full
+    std::span<const double> weights{}; ///< of a body with morph targets, one per target: where any is not 0 and there
+                                       ///< are no positions, all vertices are evaluated and the update is full
 };
 
 /// What a frame took.
@@ -101,7 +103,10 @@ public:
     BodyId add(const DeformableSurface& surface);
     /// The same with options of its own.
     BodyId add(const DeformableSurface& surface, const LazyOptions& own);
+    /// The same of a surface that morph targets displace; they must stay as they are, and alive.
+    BodyId add(const DeformableSurface& surface, std::span<const MorphTarget> targets);
     BodyId add(const DeformableSurface&& surface) = delete; ///< it is referred to
+    BodyId add(const DeformableSurface&& surface, std::span<const MorphTarget> targets) = delete;
     BodyId add(const DeformableSurface&& surface, const LazyOptions& own) = delete;
     /// The same with a tree that is there, whose leaves have at most options.lanes triangles and vertices. It must stay
     /// alive for methods without kernels (sphere, corners, vertices).

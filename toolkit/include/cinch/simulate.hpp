@@ -36,10 +36,12 @@ public:
 /// A scene (JSON, its schema is data/scenes/schema.json) on its way through time.
 class SceneSimulation {
 public:
-    /// Throws InputError, one line with file, place in it and reason, for what cannot be.
-    explicit SceneSimulation(const std::filesystem::path& scene);
+    /// Throws InputError, one line with file, place in it and reason, for what cannot be. `decoders`: of characters in
+    /// compressed files.
+    explicit SceneSimulation(const std::filesystem::path& scene, const Decompression* decoders = nullptr);
     /// From text; `name` is for messages, and relative file names are taken from `folder`.
-    SceneSimulation(std::string_view json, const std::string& name, const std::filesystem::path& folder);
+    SceneSimulation(std::string_view json, const std::string& name, const std::filesystem::path& folder,
+                    const Decompression* decoders = nullptr);
     ~SceneSimulation();
     /// What was moved from can only be assigned to or destroyed.
     SceneSimulation(SceneSimulation&&) noexcept;
