@@ -3,6 +3,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <span>
 
 #include "toolkit/bounds/rounding.hpp"
 #include "toolkit/deform/dyadic.hpp"
@@ -96,16 +98,109 @@ double distance_to_hull(const Vec3& x, std::span<const Vec3> hull, double enough
         alpha[to] += move;
         r -= move * d;
     }
+    double most = x.lpNorm<Eigen::Infinity>();
+    for (const Vec3& p : hull)
+        most = std::max(most, p.lpNorm<Eigen::Infinity>());
+    const double n = static_cast<double>(hull.size()),
+                 rounding = 4 * (n + 8) * unit_roundoff * most + n * smallest_subnormal;
+    // r and the sum of alpha have passed 200 steps of less than 8u·m each at most, together less than 45 times
+    // `rounding`: less than 0.01 of `enough`, as is what 0.98 leaves.
+    if (r.squaredNorm() <= 0.98 * enough * enough && rounding < 2e-4 * enough)
+        return enough;
     round_dyadic(alpha);
     Vec3 sum = Vec3::Zero();
-    double most = x.lpNorm<Eigen::Infinity>();
-    for (std::size_t i = 0; i < hull.size(); ++i) {
+    for (std::size_t i = 0; i < hull.size(); ++i)
         sum += alpha[i] * hull[i];
-        most = std::max(most, hull[i].lpNorm<Eigen::Infinity>());
-    }
-    const double n = static_cast<double>(hull.size());
-    return succ(length(x - sum) + (4 * (n + 8) * unit_roundoff * most + n * smallest_subnormal));
+    return succ(length(x - sum) + rounding);
 }
+
+// The triangle of the net that the points so far leave farthest from h: max_i (h(u_i) − u_i·p) of its corners, for the
+// best point p. It only shrinks as points are added, so that what was computed of a triangle before the last points is
+// at least what it is: only those on top are brought up to date.
+class WorstTriangle {
+public:
+    WorstTriangle(const Net& net, std::span<const double> height, std::span<const Vec3> points)
+        : net_(net), height_(height), left_(net.triangle.size(), std::numeric_limits<double>::infinity()),
+          seen_(left_.size(), 0), points_(points.begin(), points.end())
+    {
+        std::vector<double> gap(height.size());
+        for (const Vec3& y : points) {
+            for (std::size_t d = 0; d < gap.size(); ++d)
+                gap[d] = height[d] - net.direction[d].dot(y);
+            for (std::size_t t = 0; t < left_.size(); ++t) {
+                const auto& [a, b, c] = net.triangle[t];
+                left_[t] = std::min(left_[t], std::max({gap[a], gap[b], gap[c]}));
+            }
+        }
+        for (std::uint32_t t = 0; t < left_.size(); ++t) {
+            seen_[t] = points_.size();
+            heap_.push_back(t);
+        }
+        std::make_heap(heap_.begin(), heap_.end(), order());
+    }
+
+    void add(const Vec3& point) { points_.push_back(point); }
+
+    /// The first of those with the most left; empty where nothing is.
+    std::optional<std::uint32_t> operator()()
+    {
+        for (;;) {
+            if (heap_.empty())
+                return {};
+            const std::uint32_t t = heap_.front();
+            if (seen_[t] == points_.size())
+                return left_[t] > 0 ? std::optional(t) : std::nullopt;
+            std::pop_heap(heap_.begin(), heap_.end(), order());
+            for (; seen_[t] < points_.size(); ++seen_[t]) {
+                double most = -std::numeric_limits<double>::infinity();
+                for (const std::uint32_t d : net_.triangle[t])
+                    most = std::max(most, height_[d] - net_.direction[d].dot(points_[seen_[t]]));
+                left_[t] = std::min(left_[t], most);
+            }
+            std::push_heap(heap_.begin(), heap_.end(), order());
+        }
+    }
+
+    /// Leaves out the one that was found.
+    void settle()
+    {
+        std::pop_heap(heap_.begin(), heap_.end(), order());
+        heap_.pop_back();
+    }
+
+    /// The corner of a triangle along which h is farthest beyond the points.
+    std::uint32_t farthest_corner(std::uint32_t t) const
+    {
+        auto short_of = [&](std::uint32_t d) {
+            double reached = -std::numeric_limits<double>::infinity();
+            for (const Vec3& y : points_)
+                reached = std::max(reached, net_.direction[d].dot(y));
+            return height_[d] - reached;
+        };
+        std::uint32_t corner = net_.triangle[t][0];
+        for (const std::uint32_t d : net_.triangle[t])
+            if (short_of(d) > short_of(corner))
+                corner = d;
+        return corner;
+    }
+
+private:
+    struct Order {
+        const std::vector<double>& left;
+        bool operator()(std::uint32_t a, std::uint32_t b) const
+        {
+            return left[a] < left[b] || (left[a] == left[b] && a > b);
+        }
+    };
+    Order order() const { return {left_}; }
+
+    const Net& net_;
+    std::span<const double> height_;
+    std::vector<double> left_;
+    std::vector<std::size_t> seen_; // points that left_ knows of
+    std::vector<Vec3> points_;
+    std::vector<std::uint32_t> heap_; // the worst on top
+};
 
 // Greedy: for every triangle of the net the best point p so far leaves max_i (h(u_i) − u_i·p), h the support of all
 // vertices, which bounds how far the hull of the points falls short of h in its cone. The next point is the extreme one
@@ -123,7 +218,7 @@ Points choose(const TriangleMesh& mesh, const Bv& bv, std::vector<std::uint32_t>
     for (std::uint32_t k : vertices)
         y.push_back(mesh.vertices[k] - bv.pivot);
     const std::size_t directions = net.direction.size();
-    std::vector<double> height(directions), reached(directions, -std::numeric_limits<double>::infinity());
+    std::vector<double> height(directions);
     std::vector<std::uint32_t> extreme(directions, 0);
     for (std::size_t d = 0; d < directions; ++d) {
         const Vec3& u = net.direction[d];
@@ -134,40 +229,28 @@ Points choose(const TriangleMesh& mesh, const Bv& bv, std::vector<std::uint32_t>
                 extreme[d] = k;
             }
     }
-    std::vector<double> left(net.triangle.size(), std::numeric_limits<double>::infinity());
     std::vector<bool> chosen(vertices.size(), false);
-    std::vector<double> gap(directions);
+    std::vector<Vec3> first;
     auto take = [&](std::uint32_t k) {
         if (chosen[k])
-            return;
+            return false;
         chosen[k] = true;
         out.vertex.push_back(vertices[k]);
-        for (std::size_t d = 0; d < directions; ++d) {
-            const double along = net.direction[d].dot(y[k]);
-            gap[d] = height[d] - along;
-            reached[d] = std::max(reached[d], along);
-        }
-        for (std::size_t t = 0; t < left.size(); ++t) {
-            const auto& [a, b, c] = net.triangle[t];
-            left[t] = std::min(left[t], std::max({gap[a], gap[b], gap[c]}));
-        }
+        return true;
     };
     for (std::size_t d = 0; d < directions; ++d) // the extremes along the axes
-        if (net.direction[d].lpNorm<1>() == Net::cells)
-            take(extreme[d]);
-    for (std::vector<bool> settled(left.size(), false); out.vertex.size() < most;) {
-        std::size_t worst = left.size();
-        for (std::size_t t = 0; t < left.size(); ++t)
-            if (!settled[t] && (worst == left.size() || left[t] > left[worst]))
-                worst = t;
-        if (worst == left.size() || left[worst] <= 0)
+        if (net.direction[d].lpNorm<1>() == Net::cells && take(extreme[d]))
+            first.push_back(y[extreme[d]]);
+    WorstTriangle worst(net, height, first);
+    while (out.vertex.size() < most) {
+        const auto t = worst();
+        if (!t)
             break;
-        std::size_t corner = net.triangle[worst][0];
-        for (std::size_t d : net.triangle[worst])
-            if (height[d] - reached[d] > height[corner] - reached[corner])
-                corner = d;
-        settled[worst] = chosen[extreme[corner]]; // all three extremes are there: as good as the net can tell
-        take(extreme[corner]);
+        const std::uint32_t k = extreme[worst.farthest_corner(*t)];
+        if (take(k))
+            worst.add(y[k]);
+        else
+            worst.settle(); // all three extremes are there: as good as the net can tell
     }
     std::vector<Vec3> hull;
     for (std::size_t k = 0; k < y.size(); ++k)
