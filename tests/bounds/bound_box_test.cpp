@@ -6,6 +6,7 @@
 #include "cinch/bounds.hpp"
 #include "toolkit/bounds/bound_box.hpp"
 #include "toolkit/bounds/bound_vertex.hpp"
+#include "toolkit/bounds/greatest_mean.hpp"
 #include "toolkit/bounds/rounding.hpp"
 
 using namespace cinch;
@@ -89,6 +90,31 @@ TEST_CASE("a map that is not finite gives infinite supports, one that overflows 
                     else if (c < 3 || d % 2 == 0) // times a coordinate above 1, or plus one
                         CHECK(s[static_cast<std::size_t>(d)] == infinite);
             }
+}
+
+TEST_CASE("a corner that overflows downwards hides no other one")
+{
+    // Weights 7/8 and 1/8 give −1.70625·10^308; what goes through −∞ on the way there must not be passed over.
+    Bounded b;
+    b.l = {0.125, 0.125};
+    b.h = {1, 0.5};
+    b.centre = b.half = Vec3::Zero();
+    b.maps[0].m[0][3] = -1.70e308;
+    b.maps[1].m[0][3] = -1.75e308;
+    for (const Method method : {Method::convex, Method::corners, Method::eq12, Method::limited}) {
+        CAPTURE(name_of(method));
+        CHECK(b.supports(method, 6)[0] >= -1.70625e308);
+    }
+}
+
+TEST_CASE("the greatest mean of numbers at the end of the range")
+{
+    const double eta = smallest_subnormal;
+    const std::vector<std::uint32_t> node{0, 1};
+    const std::vector<double> l{0.375, 0.25}, h{0.75, 0.625};
+    const RestBv bv{{Vec3::Zero(), Vec3::Zero()}, node, {l, h}, {}, {}, Vec3::Zero(), {}, {}, 0, 2};
+    const double c[2] = {2 * eta, eta};
+    CHECK(greatest_mean(bv, [&](std::size_t j) { return c[j]; }) == 2 * eta); // 3/4 and 1/4 give 1.75 η
 }
 
 TEST_CASE("bound_vertex gives the vertex, and infinity for what is not finite")

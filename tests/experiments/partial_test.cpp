@@ -102,7 +102,10 @@ TEST_CASE("frames with morph targets are proven and drawn with them, and a proof
     CHECK((damaged.status == 0 || damaged.status == 1)); // the file's numbers are round
     const test::TemporaryFolder folder;
     const std::string at = folder.path().string();
-    for (const std::string& option : {"--certificate " + at + "/c.gz", "--vipr " + at + "/v", std::string("--volume")})
+    const auto certified = test::cinch("verify " + file + " --method limited --certificate " + at + "/c.jsonl");
+    CHECK(certified.status == 0);
+    CHECK_THAT(certified.out, Catch::Contains(" 0 violated\n"));
+    for (const std::string& option : {"--vipr " + at + "/v", std::string("--volume")})
         CHECK(test::cinch("verify " + file + " --method limited " + option).status == 2);
     const json view = json::parse(test::cinch("view " + file + " --frames 2 --methods best,eq12 --json").lines().at(0));
     CHECK(view["partial"] == false);

@@ -274,7 +274,9 @@ TEST_CASE("a scene whose body is packed is the one whose body is not, with decod
     std::ofstream(folder / "plain.gltf") << document(s, false).text();
     std::ofstream(folder / "packed.gltf") << draco_document(s, false, 0).text();
     auto simulation = [&](const std::string& file, const Decompression* decoders) {
-        const json scene = {{"duration", 1}, {"bodies", {{{"name", "strip"}, {"surface", file}, {"nodes", 12}}}}};
+        const json scene = {{"duration", 1},
+                            {"effects", json::array()},
+                            {"bodies", {{{"name", "strip"}, {"surface", file}, {"nodes", 12}}}}};
         return SceneSimulation(scene.dump(), "scene.json", folder, decoders);
     };
     const SceneSimulation plain = simulation("plain.gltf", nullptr),

@@ -343,6 +343,11 @@ TEST_CASE("the greatest value between two ends")
     CHECK(greatest_between(0, 0, 10, 1) == Approx(0.5));          // half there, half back
     CHECK(greatest_between(infinity, 0, 1, 1) == infinity);
     CHECK(greatest_between(0, 0, std::nan(""), infinity) == infinity);
+    CHECK(greatest_between(0, 1e-170, 0.5e-170, infinity) >= 1.125e-170); // squares of which vanish
+    CHECK(greatest_between(0, 1e-170, 0.5e-170, infinity) < 1.1251e-170);
+    CHECK(greatest_between(0, 0x1p-1074, 0x1p-1074, infinity) >= 0x1p-1073); // 1.5625 of the least number
+    CHECK(greatest_between(-1.7e308, 1.7e308, 0x1p1023, infinity) == infinity);
+    CHECK(greatest_between(0, 1, HUGE_VAL, 1) == Approx(1)); // its way says enough
     Random random(3);
     for (int i = 0; i < 10000; ++i) { // against the parabola itself
         const double a = between(random, -1, 1), b = between(random, -1, 1), s = between(random, -1, 1);

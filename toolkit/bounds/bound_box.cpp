@@ -40,17 +40,22 @@ double extrema(const RestBv& bv, std::span<const AffineMap> maps, const Axis& ax
 
 // The greatest of the n(n − 1) corners of §5.2.2: h at i, what is missing to 1 at j, l elsewhere. Kavan and Žára's
 // coherent form, Σ l b + (h_i − l_i) b_i + (1 − Σ l − (h_i − l_i)) b_j; the factors are exact for weights in units of
-// 2^-53. The sum of n products and the last two pass at most n + 4 roundings on leaves that are below 3 max |b| in all.
+// 2^-53. The sum of n products and the last two pass at most n + 4 roundings on leaves that are below 3 max |b| in all;
+// so none overflows, where max |b| is below 2^1020. Above, a corner that overflows downwards may be the one that
+// counts.
 double best_corner(WeightSpace space, std::span<const double> b, Rounding rounding)
 {
     if (b.size() == 1)
         return b[0];
+    constexpr double most_safe = 0x1p1020;
     double base = 0, slack = 1, magnitude = 0, best = -infinite;
     for (std::size_t j = 0; j < b.size(); ++j) {
         base += space.l[j] * b[j];
         slack -= space.l[j];
         magnitude = std::max(magnitude, std::abs(b[j]));
     }
+    if (!(magnitude < most_safe))
+        return infinite;
     for (std::size_t i = 0; i < b.size(); ++i) {
         const double range = space.h[i] - space.l[i], raised = base + range * b[i];
         for (std::size_t j = 0; j < b.size(); ++j)

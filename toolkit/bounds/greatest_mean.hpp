@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "cinch/bounds.hpp"
+#include "toolkit/bounds/rounding.hpp"
 
 namespace cinch {
 
@@ -25,8 +26,9 @@ template <class F> double greatest_mean(const RestBv& bv, F&& of)
         const double above = of(j) - second;
         sum += bv.space.l[j] * above + (bv.space.h[j] - bv.space.l[j]) * std::max(above, 0.0);
     }
-    // |terms| sum to at most 3 most, each passes n + 3 roundings.
-    const double rounding = (static_cast<double>(bv.node.size()) + 8) * 0x1p-51 * most;
+    // |terms| sum to at most 3 most, each passes n + 3 roundings; 2n products lose at most η/2 each, and the next one.
+    const double rounding =
+        (static_cast<double>(bv.node.size()) + 8) * 0x1p-51 * most + smallest_times<double>(2 * bv.node.size());
     return std::min(most, sum + rounding);
 }
 

@@ -36,18 +36,22 @@ double greatest_between(double first, double last, double bump, double path)
     if (std::isnan(path))
         path = infinite;
     const double most = std::max(first, last), least = std::min(first, last);
-    if (!(most < infinite) || std::isnan(first) || std::isnan(last))
+    constexpr double most_safe = 0x1p1020; // no sum of the values below overflows
+    if (!(most < most_safe && least > -most_safe) || std::isnan(first) || std::isnan(last))
         return infinite;
-    // Each value below passes at most 6 roundings of what |first| + |last| + bump are the size of: the last term is at
-    // most (last − first)/4, as last − first < 4 bump where it is taken.
+    // Each value below passes at most 7 roundings of what |first| + |last| + bump are the size of: the last term is at
+    // most (last − first)/4, as last − first < 4 bump where it is taken. Halves, the quotient and the product by it
+    // lose at most η/2 each besides.
     if (bump <= 0 || most - least >= 4 * bump)
         return succ(most);
     const double d = most - least;
-    double parabola = (first + last) / 2 + bump + d * d / (16 * bump);
-    parabola = std::max(most, parabola + 0x1p-49 * (std::abs(first) + std::abs(last) + bump));
-    parabola = infinite_unless(parabola);
+    double parabola = (first + last) / 2 + bump + d * (d / bump / 16);
+    parabola =
+        std::max(most, parabola + (0x1p-49 * (std::abs(first) + std::abs(last) + bump) + 4 * smallest_subnormal));
+    parabola = bump < most_safe ? infinite_unless(parabola) : infinite;
     const double way = std::min((first + last + path) / 2, least + path),
-                 lipschitz = infinite_unless(way + 0x1p-49 * (std::abs(first) + std::abs(last) + path));
+                 lipschitz =
+                     infinite_unless(way + (0x1p-49 * (std::abs(first) + std::abs(last) + path) + smallest_subnormal));
     return succ(std::min(parabola, std::max(most, lipschitz)));
 }
 
