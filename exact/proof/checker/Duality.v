@@ -18,8 +18,8 @@ Definition space_of (v : unit_vertex) : space :=
 Definition join_interval (a b : option (Z * Z)) : option (Z * Z) :=
   match a, b with
   | Some (l, h), Some (m, g) => Some (Z.min l m, Z.max h g)
-  | Some (_, h), None => Some (0, h)
-  | None, Some (_, h) => Some (0, h)
+  | Some (l, h), None => Some (Z.min l 0, Z.max h 0)
+  | None, Some (l, h) => Some (Z.min l 0, Z.max h 0)
   | None, None => None
   end.
 

@@ -149,14 +149,14 @@ Definition weights_within (l : list interval) (v : vertex) : Prop :=
   (forall j a b, In (j, (a, b)) l -> within a b (weight_of v j)) /\
   (forall j, ~ In j (map fst l) -> weight_of v j = 0).
 
-(* Any weights of the intervals with sum 1, and per simulation node any point of the box *)
+(* Any convex weights of the intervals, and per simulation node any point of the box *)
 Definition blend (g : direction) (ms : list affine) (w : Z -> R) (x : Z -> R * R * R) (l : list interval) : R :=
   fold_right (fun e s => let j := fst e in let '(a, b, c) := x j in
     w j * along g (image (row_of row_x ms j) a b c) (image (row_of row_y ms j) a b c) (image (row_of row_z ms j) a b c)
     + s) 0 l.
 
 Definition blends_enclosed (g : direction) (ms : list affine) (b : box) (l : list interval) (bound : R) : Prop :=
-  forall w x, (forall j lo hi, In (j, (lo, hi)) l -> within lo hi (w j)) ->
+  forall w x, (forall j lo hi, In (j, (lo, hi)) l -> 0 <= w j /\ within lo hi (w j)) ->
     fold_right (fun e s => w (fst e) + s) 0 l = 1 ->
     (forall j, let '(p, q, r) := x j in in_box b p q r) ->
     blend g ms w x l <= bound.
