@@ -102,8 +102,7 @@ Fixpoint above_supports (k : Z) (bs : list (option dyadic)) (ss : list (option Z
   end.
 
 Definition is_bound (b : option dyadic) : bool := match b with Some d => is_double d | None => true end.
-Definition is_finite (b : option dyadic) : bool := match b with Some _ => true | None => false end.
-Definition finite_count (l : list (option dyadic)) : Z := size (filter is_finite l).
+Definition finite_count (l : list (option dyadic)) : Z := size (filter finite_bound l).
 
 (* Whether lambdas are there just where they have to be, and bounds are doubles, one per direction *)
 Definition is_claim (s : surface) (c : claim) : bool :=
@@ -133,7 +132,7 @@ Definition step (now : state) (l : line) : outcome :=
   match now, l with
   | Start, LHeader h => if is_header h then Next (Reading h 0 0 0 [] [] []) else Rejected BadHeader
   | Reading h nv nt nb vs ts bs, LVertex i v =>
-    if (i =? nv) && (nv <? vertex_count h) && (nt =? 0) then
+    if (i =? nv) && (nv <? vertex_count h) && (nt =? 0) && (nb =? 0) then
       if is_vertex h v then Next (Reading h (nv + 1) nt nb (v :: vs) ts bs) else Rejected BadVertex
     else Rejected WrongOrder
   | Reading h nv nt nb vs ts bs, LTriangle i t =>

@@ -104,6 +104,9 @@ Definition axes (k : Z) : list direction :=
 Definition opposite (g : direction) : direction := let '(a, b, c) := g in (- a, - b, - c).
 Definition directions (k : Z) : list direction := flat_map (fun g => [g; opposite g]) (axes k).
 
+(* Of bounds: not infinity *)
+Definition finite_bound (b : option dyadic) : bool := match b with Some _ => true | None => false end.
+
 (* ---- Which methods are proven by weak duality too (box_methods over axis-aligned rest boxes) ---- *)
 
 Definition box_method (m : method) : bool :=

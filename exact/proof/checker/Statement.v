@@ -173,7 +173,6 @@ Definition spaces_enclosed (c : content) : Prop :=
 
 (* ---- Frames and the end ---- *)
 
-Definition finite_bound (b : option dyadic) : bool := match b with Some _ => true | None => false end.
 Definition all_bounds (c : content) : list (option dyadic) := flat_map (fun f => flat_map bounds (claims f)) (frames c).
 
 Record whole_frame (c : content) (f : frame) : Prop := {
