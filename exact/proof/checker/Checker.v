@@ -63,16 +63,16 @@ Inductive outcome := Next (s : state) | Rejected (r : reason).
 Definition finest_rest (vs : list vertex) : Z := fold_left (fun k v => finest k (coordinates (rest v))) vs 0.
 
 Definition spaces_of (own : table unit_vertex) (bv_count : Z) (l : list held) : list (option listed_space) :=
-  rev (reversed_map (option_map listed)
+  reversed (reversed_map (option_map listed)
     (climb join_space (fun v => option_map space_of (get own v)) (bv_count - 1) l empty [])).
 
 Definition surface_of (h : header) (vs : list vertex) (ts : list triangle) (bs : list bv) : surface :=
   let k := finest_rest vs in
-  let us := reversed_map (vertex_in_units k) (rev vs) in
-  let corner_table := table_of (rev ts) in
-  let hs := reversed_map (held_by corner_table) (rev bs) in
+  let us := reversed_map (vertex_in_units k) (reversed vs) in
+  let corner_table := table_of (reversed ts) in
+  let hs := reversed_map (held_by corner_table) (reversed bs) in
   Surface h (directions (kdop h)) k us hs
-    (if by_duality h then spaces_of (table_of (rev us)) (bv_count h) hs else []).
+    (if by_duality h then spaces_of (table_of (reversed us)) (bv_count h) hs else []).
 
 Definition is_map (m : affine) : bool := forallb is_double (entries m).
 Definition is_frame (h : header) (time : dyadic) (ms : list affine) : bool :=
@@ -83,12 +83,12 @@ Definition finest_map (ms : list affine) : Z := fold_left (fun k m => finest k (
 Definition aims_of (s : surface) (ms : list affine) : aims :=
   let map_bits := finest_map ms in
   let k := map_bits + rest_bits s in
-  let us := rev (reversed_map (map_in_units map_bits (rest_bits s)) ms) in
+  let us := reversed (reversed_map (map_in_units map_bits (rest_bits s)) ms) in
   let maps_table := table_of us in
   let supports := table_of (reversed_map (supports_of_vertex (sides s) k maps_table) (unit_vertices s)) in
   Aims k
     (if by_duality (about s) then
-       map (fun g => table_of (rev (reversed_map (column_of g) us))) (sides s)
+       map (fun g => table_of (reversed (reversed_map (column_of g) us))) (sides s)
      else [])
     (climb greater_supports (get supports) (bv_count (about s) - 1) (tree s) empty [])
     (spaces s).

@@ -75,21 +75,21 @@ Section Frames.
 
   Lemma unit_vertices_shared : unit_vertices s = rev (map (vertex_in_units k0) vs).
   Proof.
-    unfold s, shared, surface_of. cbn [unit_vertices]. fold k0. now rewrite rev_involutive, reversed_map_map.
+    unfold s, shared, surface_of. cbn [unit_vertices]. fold k0.
+    now rewrite reversed_rev, rev_involutive, reversed_map_map.
   Qed.
 
   Lemma tree_shared : tree s = rev hs.
   Proof.
-    unfold s, shared, surface_of. cbn [tree]. now rewrite !rev_involutive, reversed_map_map.
+    unfold s, shared, surface_of. cbn [tree]. now rewrite !reversed_rev, !rev_involutive, reversed_map_map.
   Qed.
 
   Lemma spaces_shared : by_duality h = true -> spaces s =
     map (option_map listed) (climb join_space (fun v => option_map space_of (at_index (map (vertex_in_units k0) vs) v))
       (bv_count h - 1) (rev hs) empty []).
   Proof.
-    intro D. pose proof unit_vertices_shared as U. pose proof tree_shared as T.
-    unfold s, shared in U, T |- *. unfold surface_of in U, T |- *. cbn [unit_vertices tree spaces] in U, T |- *.
-    rewrite D. unfold spaces_of. rewrite reversed_map_map, rev_involutive, T, U, rev_involutive. f_equal.
+    intro D. unfold s, shared, surface_of. cbn [spaces]. rewrite D. unfold spaces_of. fold k0.
+    rewrite !reversed_rev, !rev_involutive, !reversed_map_map, !rev_involutive. f_equal.
     assert (forall own own', (forall v, own v = own' v) -> forall l i done out,
       climb join_space own i l done out = climb join_space own' i l done out) as Same; [| apply Same; intro v; now rewrite get_table_of].
     intros own own' E. assert (forall vs', joined join_space own vs' = joined join_space own' vs') as J.
@@ -153,13 +153,13 @@ Section Frames.
         (map (vertex_in_units k0) vs)))) (bv_count h - 1) (rev hs) empty [].
     Proof.
       unfold a, aims_of. cbv zeta. cbn [supports_left]. rewrite tree_shared, unit_vertices_shared.
-      rewrite !reversed_map_map, rev_involutive, <- map_rev, rev_involutive. reflexivity.
+      rewrite !reversed_map_map, reversed_rev, rev_involutive, <- map_rev, rev_involutive. reflexivity.
     Qed.
 
     Lemma columns_of_aims : by_duality h = true -> columns a = map (fun g => table_of (map (column_of g) us)) gs.
     Proof.
       intro D. unfold a, aims_of. cbv zeta. cbn [columns]. change (about s) with h. rewrite D. apply map_ext.
-      intro g. now rewrite !reversed_map_map, !rev_involutive.
+      intro g. now rewrite !reversed_map_map, !reversed_rev, !rev_involutive.
     Qed.
 
     Lemma claim_at i cl : at_index (claims f) i = Some cl ->

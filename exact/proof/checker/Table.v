@@ -18,6 +18,9 @@ Fixpoint fill {A : Type} (i : Z) (l : list A) (t : table A) : table A :=
   end.
 Definition table_of {A : Type} (l : list A) : table A := fill 0 l empty.
 
+(* The other way round; `rev` of the standard library takes quadratic time. *)
+Definition reversed {A : Type} (l : list A) : list A := rev_append l [].
+
 (* flat_map, in another order *)
 Definition gather {A B : Type} (f : A -> list B) (l : list A) : list B :=
   fold_left (fun out x => rev_append (f x) out) l [].

@@ -75,6 +75,9 @@ Proof. induction l as [| x l IH]; intro out; cbn; [easy |]. now rewrite IH, <- a
 Lemma reversed_map_map {A B : Type} (f : A -> B) l : reversed_map f l = rev (map f l).
 Proof. unfold reversed_map. now rewrite reversed_map_acc, app_nil_r. Qed.
 
+Lemma reversed_rev {A : Type} (l : list A) : reversed l = rev l.
+Proof. unfold reversed. now rewrite rev_append_rev, app_nil_r. Qed.
+
 Lemma gather_acc {A B : Type} (f : A -> list B) l : forall out,
   Permutation (fold_left (fun out x => rev_append (f x) out) l out) (flat_map f l ++ out).
 Proof.
