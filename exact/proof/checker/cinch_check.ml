@@ -18,7 +18,6 @@ let reason why =
   | BadEnd -> "the end states other counts, or bounds that are violated"
 
 let is_blank line = String.for_all (function ' ' | '\t' | '\r' | '\011' | '\012' -> true | _ -> false) line
-[@@ocamlformat "disable"]
 
 (* The fold of Checker.run over the lines, as they come *)
 let check input =
@@ -59,6 +58,7 @@ let () =
     | [ _; "--help" ] -> print_endline usage; exit 0
     | _ -> prerr_endline usage; exit 2
   in
+  Gc.set { (Gc.get ()) with minor_heap_size = 1 lsl 20; space_overhead = 200 };
   set_binary_mode_in input true;
   match check input with
   | Ok (hashes, Some e) ->
