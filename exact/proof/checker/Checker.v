@@ -88,7 +88,7 @@ Definition aims_of (s : surface) (ms : list affine) : aims :=
   let supports := table_of (reversed_map (supports_of_vertex (sides s) k maps_table) (unit_vertices s)) in
   Aims k
     (if by_duality (about s) then
-       map (fun g => table_of (reversed (reversed_map (column_of g) us))) (sides s)
+       map (fun g => table_of (reversed (reversed_map (column_of g) us))) (axes (kdop (about s)))
      else [])
     (climb greater_supports (get supports) (bv_count (about s) - 1) (tree s) empty [])
     (spaces s).

@@ -49,10 +49,25 @@ Definition column_of (g : direction) (m : unit_map) : column :=
     (unit_along g (uc (unit_x m)) (uc (unit_y m)) (uc (unit_z m)))
     (2 * unit_along g (ut (unit_x m)) (ut (unit_y m)) (ut (unit_z m))).
 
-(* The extremum of the box moved by a map: in units of 2 ^ -(map_bits + rest_bits + 1) *)
-Definition extremum (s : listed_space) (c : column) : Z :=
-  ga c * sum_x s + gb c * sum_y s + gc c * sum_z s + twice_t c +
-  (Z.abs (ga c) * extent_x s + Z.abs (gb c) * extent_y s + Z.abs (gc c) * extent_z s).
+(* The box moved by a map, in units of 2 ^ -(map_bits + rest_bits + 1): middle and radius along the direction *)
+Definition middle (s : listed_space) (c : column) : Z :=
+  ga c * sum_x s + gb c * sum_y s + gc c * sum_z s + twice_t c.
+Definition radius (s : listed_space) (c : column) : Z :=
+  Z.abs (ga c) * extent_x s + Z.abs (gb c) * extent_y s + Z.abs (gc c) * extent_z s.
+
+(* Of one simulation node: extrema along the direction and against it, and its weight interval *)
+Record term := Term { along_it : Z; against_it : Z; least : Z; most : Z }.
+
+(* None where a map misses *)
+Fixpoint terms (s : listed_space) (t : table column) (l : list (Z * (Z * Z))) : option (list term) :=
+  match l with
+  | [] => Some []
+  | (j, (lo, hi)) :: r =>
+    match get t j, terms s t r with
+    | Some c, Some es => let p := middle s c in let e := radius s c in Some (Term (e + p) (e - p) lo hi :: es)
+    | _, _ => None
+    end
+  end.
 
 (* lambda = fst / (snd * 2 ^ -k) *)
 Definition multiplier_in_units (k : Z) (m : multiplier) : Z * Z :=
@@ -65,30 +80,31 @@ Definition multiplier_in_units (k : Z) (m : multiplier) : Z * Z :=
 Definition is_multiplier (m : multiplier) : bool :=
   match m with Double d => is_double d | Ratio _ q => 0 <? q end.
 
-(* sum_j c_j (q b_j - p), c_j the interval's end that makes it greatest; None where a map misses *)
-Definition dual_sum (s : listed_space) (t : table column) (p q : Z) : option Z :=
-  fold_left (fun sum e =>
-    match sum, get t (fst e) with
-    | Some n, Some c =>
-      let x := q * extremum s c - p in
-      Some (n + (if 0 <? x then snd (snd e) else fst (snd e)) * x)
-    | _, _ => None
-    end) (intervals s) (Some 0).
+Definition times (q n : Z) : Z := if q =? 1 then n else q * n.
+
+(* sum_j c_j (q b_j - p), c_j the interval's end that makes it greatest *)
+Definition dual_sum (b : term -> Z) (p q : Z) : list term -> Z -> Z :=
+  fold_left (fun sum e => let x := times q (b e) - p in sum + (if 0 <? x then most e else least e) * x).
 
 (* k = map_bits + rest_bits *)
-Definition above_dual (k : Z) (s : listed_space) (t : table column) (bound : dyadic) (lambda : multiplier) : bool :=
+Definition above_dual (k : Z) (b : term -> Z) (es : list term) (bound : option dyadic) (lambda : multiplier) : bool :=
   is_multiplier lambda &&
-  (let '(p, q) := multiplier_in_units (k + 1) lambda in
-   match dual_sum s t p q with
-   | Some n => at_least (Dyadic (man bound * q) (exn bound)) (k + 1 + weight_bits) (Z.shiftl p weight_bits + n)
-   | None => false
-   end).
+  match bound with
+  | None => true
+  | Some d =>
+    let '(p, q) := multiplier_in_units (k + 1) lambda in
+    at_least (Dyadic (man d * q) (exn d)) (k + 1 + weight_bits) (dual_sum b p q es (Z.shiftl p weight_bits))
+  end.
 
+(* A table per axis; bounds and lambdas along it and against it *)
 Fixpoint above_duals (k : Z) (s : listed_space) (ts : list (table column)) (bs : list (option dyadic))
     (ls : list multiplier) : bool :=
   match ts, bs, ls with
   | [], [], [] => true
-  | t :: ts', Some b :: bs', l :: ls' => above_dual k s t b l && above_duals k s ts' bs' ls'
-  | _ :: ts', None :: bs', l :: ls' => is_multiplier l && above_duals k s ts' bs' ls'
+  | t :: ts', b :: c :: bs', l :: m :: ls' =>
+    match terms s t (intervals s) with
+    | Some es => above_dual k along_it es b l && above_dual k against_it es c m && above_duals k s ts' bs' ls'
+    | None => false
+    end
   | _, _, _ => false
   end.

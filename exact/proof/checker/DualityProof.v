@@ -138,10 +138,22 @@ Proof. unfold in_units. rewrite minus_IZR. ring. Qed.
 Definition moved (g : direction) (m : affine) (p : R * R * R) : R :=
   let '(x, y, z) := p in along g (image (row_x m) x y z) (image (row_y m) x y z) (image (row_z m) x y z).
 
+(* Of the moved box *)
+Definition extremum (s : space) (m : unit_map) (g : direction) : Z :=
+  radius (listed s) (column_of g m) + middle (listed s) (column_of g m).
+
+Lemma extremum_opposite s m g :
+  extremum s m (opposite g) = (radius (listed s) (column_of g m) - middle (listed s) (column_of g m))%Z.
+Proof.
+  assert (forall a b c, unit_along (opposite g) a b c = (- unit_along g a b c)%Z) as O
+    by (intros a b c; destruct g as [[p q] r]; cbn; ring).
+  unfold extremum, radius, middle, column_of. cbn [ga gb gc twice_t]. rewrite !O, !Z.abs_opp. ring.
+Qed.
+
 Lemma extremum_sound map_bits rest_bits g m s x y z :
   (0 <= map_bits)%Z -> (0 <= rest_bits)%Z -> fine map_bits (entries m) -> in_box (box_of rest_bits s) x y z ->
   moved g m (x, y, z) <=
-  in_units (map_bits + rest_bits + 1) (extremum (listed s) (column_of g (map_in_units map_bits rest_bits m))).
+  in_units (map_bits + rest_bits + 1) (extremum s (map_in_units map_bits rest_bits m) g).
 Proof.
   intros M R F [X [Y Z]]. unfold within, box_of in X, Y, Z. cbn [low high px py pz corner_point] in X, Y, Z.
   change (value (Dyadic (x0 s) (- rest_bits))) with (in_units rest_bits (x0 s)) in X.
@@ -158,7 +170,7 @@ Proof.
   destruct (entries_value map_bits rest_bits R _ Fx) as (Xa & Xb & Xc & Xt).
   destruct (entries_value map_bits rest_bits R _ Fy) as (Ya & Yb & Yc & Yt).
   destruct (entries_value map_bits rest_bits R _ Fz) as (Za & Zb & Zc & Zt).
-  unfold extremum, listed, column_of.
+  unfold extremum, radius, middle, listed, column_of.
   cbn [ga gb gc twice_t sum_x sum_y sum_z extent_x extent_y extent_z unit_x unit_y unit_z map_in_units].
   rewrite in_units_half, !in_units_add, (in_units_scale _ 2), !in_units_mul, !in_units_abs, !along_value, !in_units_add,
     !in_units_sub.
@@ -177,61 +189,71 @@ Qed.
 (* ---- Duality ---- *)
 
 Section Dual.
-  Context (ms : list affine) (map_bits rest_bits : Z) (g : direction) (t : table column).
+  Context (ms : list affine) (map_bits rest_bits : Z).
   Context (Hm : (0 <= map_bits)%Z) (Hr : (0 <= rest_bits)%Z).
   Context (Hfine : forall m, In m ms -> fine map_bits (entries m)).
-  Context (Ht : forall j, get t j =
-    option_map (fun m => column_of g (map_in_units map_bits rest_bits m)) (at_index ms j)).
 
   Let k := (map_bits + rest_bits)%Z.
 
-  Definition dual_term (s : listed_space) (p q : Z) (sum : option Z) (e : Z * (Z * Z)) : option Z :=
-    match sum, get t (fst e) with
-    | Some n, Some c =>
-      let x := (q * extremum s c - p)%Z in
-      Some (n + (if 0 <? x then snd (snd e) else fst (snd e)) * x)%Z
-    | _, _ => None
-    end.
-
-  Lemma dual_terms_none s p q l : fold_left (dual_term s p q) l None = None.
-  Proof. induction l; cbn; easy. Qed.
-
-  Definition image_of (j : Z) (p : R * R * R) : R :=
+  Definition image_of (g : direction) (j : Z) (p : R * R * R) : R :=
     let '(a, b, c) := p in
     along g (image (row_of row_x ms j) a b c) (image (row_of row_y ms j) a b c) (image (row_of row_z ms j) a b c).
 
-  Lemma dual_sound (s : space) (p q : Z) (w : Z -> R) (x : Z -> R * R * R) :
-    (0 < q)%Z -> (forall j, let '(a, b, c) := x j in in_box (box_of rest_bits s) a b c) -> forall l n m,
-    (forall j lo hi, In (j, (lo, hi)) l -> 0 <= w j /\ in_units weight_bits lo <= w j <= in_units weight_bits hi) ->
-    fold_left (dual_term (listed s) p q) l (Some n) = Some m ->
-    in_units (k + 1 + weight_bits) n +
-      IZR q * fold_right (fun e sum => w (fst e) * image_of (fst e) (x (fst e)) + sum) 0 l -
-      in_units (k + 1) p * fold_right (fun e sum => w (fst e) + sum) 0 l <=
-    in_units (k + 1 + weight_bits) m.
+  (* Terms belong to intervals, and b of each is the extremum along g. *)
+  Definition matches (s : space) (g : direction) (b : term -> Z) (iv : Z * (Z * Z)) (e : term) : Prop :=
+    least e = fst (snd iv) /\ most e = snd (snd iv) /\
+    exists m, at_index ms (fst iv) = Some m /\ b e = extremum s (map_in_units map_bits rest_bits m) g.
+
+  Lemma terms_match s g t : (forall j, get t j =
+      option_map (fun m => column_of g (map_in_units map_bits rest_bits m)) (at_index ms j)) -> forall l es,
+    terms (listed s) t l = Some es ->
+    Forall2 (matches s g along_it) l es /\ Forall2 (matches s (opposite g) against_it) l es.
   Proof.
-    intros Q B. induction l as [| [j [lo hi]] l IH]; intros n m W F.
-    - cbn in F |- *. injection F as <-. lra.
-    - cbn [fold_left] in F. unfold dual_term in F at 2. cbn [fst snd] in F.
-      destruct (get t j) as [c |] eqn:G; [| now rewrite dual_terms_none in F].
-      set (d := (q * extremum (listed s) c - p)%Z) in F.
-      set (v := if (0 <? d)%Z then hi else lo) in F.
-      apply IH in F; [| intros i a b I; apply (W i a b); now right].
-      cbn [fold_right fst]. rewrite in_units_add in F.
-      replace (k + 1 + weight_bits)%Z with (weight_bits + (k + 1))%Z in F at 2 by ring. rewrite in_units_mul in F.
+    intro Ht. induction l as [| [j [lo hi]] l IH]; intros es E; cbn [terms] in E.
+    - injection E as <-. split; constructor.
+    - rewrite Ht in E. destruct (at_index ms j) as [m |] eqn:A; [| easy]. cbn [option_map] in E.
+      destruct (terms (listed s) t l) as [es' |]; [| easy]. destruct (IH es' eq_refl) as [P Q].
+      injection E as <-. split; constructor; try easy; (split; [easy |]; split; [easy |]); exists m; (split; [easy |]).
+      + reflexivity.
+      + symmetry. apply extremum_opposite.
+  Qed.
+
+  Lemma times_mul q n : times q n = (q * n)%Z.
+  Proof. unfold times. destruct (Z.eqb_spec q 1) as [-> |]; ring. Qed.
+
+  Lemma dual_sound (s : space) (g : direction) (b : term -> Z) (p q : Z) (w : Z -> R) (x : Z -> R * R * R) :
+    (0 < q)%Z -> (forall j, let '(a, b, c) := x j in in_box (box_of rest_bits s) a b c) -> forall l es n,
+    Forall2 (matches s g b) l es ->
+    (forall j lo hi, In (j, (lo, hi)) l -> 0 <= w j /\ in_units weight_bits lo <= w j <= in_units weight_bits hi) ->
+    in_units (k + 1 + weight_bits) n +
+      IZR q * fold_right (fun e sum => w (fst e) * image_of g (fst e) (x (fst e)) + sum) 0 l -
+      in_units (k + 1) p * fold_right (fun e sum => w (fst e) + sum) 0 l <=
+    in_units (k + 1 + weight_bits) (dual_sum b p q es n).
+  Proof.
+    intros Q B. induction l as [| [j [lo hi]] l IH]; intros es n F W; inversion F as [| iv e l' es' M F']; subst.
+    - cbn. lra.
+    - destruct M as (Lo & Hi & m & A & Be). cbn [fst snd] in Lo, Hi, A.
+      unfold dual_sum. cbn [fold_left]. fold (dual_sum b p q). rewrite times_mul, Lo, Hi, Be.
+      set (u := extremum s (map_in_units map_bits rest_bits m) g) in *.
+      set (d := (q * u - p)%Z).
+      set (v := if (0 <? d)%Z then hi else lo).
+      assert (forall i a c, In (i, (a, c)) l -> 0 <= w i /\ in_units weight_bits a <= w i <= in_units weight_bits c) as W'
+        by (intros i a c I; apply (W i a c); now right).
+      pose proof (IH es' (n + v * d)%Z F' W') as G.
+      cbn [fold_right fst]. rewrite in_units_add in G.
+      replace (k + 1 + weight_bits)%Z with (weight_bits + (k + 1))%Z in G at 2 by ring. rewrite in_units_mul in G.
       destruct (W j lo hi) as [W0 [Wl Wh]]; [now left |].
       assert (w j * in_units (k + 1) d <= in_units weight_bits v * in_units (k + 1) d) as T.
       { unfold v. destruct (Z.ltb_spec 0 d) as [L | L].
         - apply Rmult_le_compat_r; [| easy]. rewrite <- (in_units_0 (k + 1)). apply in_units_le. lia.
         - assert (in_units (k + 1) d <= 0) by (rewrite <- (in_units_0 (k + 1)); apply in_units_le; lia). nra. }
-      assert (in_units (k + 1) d = IZR q * in_units (k + 1) (extremum (listed s) c) - in_units (k + 1) p) as D.
+      assert (in_units (k + 1) d = IZR q * in_units (k + 1) u - in_units (k + 1) p) as D.
       { unfold d. now rewrite in_units_sub, in_units_scale. }
-      assert (image_of j (x j) <= in_units (k + 1) (extremum (listed s) c)) as E.
-      { rewrite Ht in G. destruct (at_index ms j) as [a |] eqn:A; [| easy]. injection G as <-.
-        unfold image_of, row_of. rewrite A. specialize (B j). destruct (x j) as [[x' y'] z'].
-        apply (extremum_sound map_bits rest_bits g a s x' y' z'); try easy. apply Hfine. now apply at_index_In in A. }
+      assert (image_of g j (x j) <= in_units (k + 1) u) as E.
+      { unfold image_of, row_of. rewrite A. specialize (B j). destruct (x j) as [[x' y'] z'].
+        apply (extremum_sound map_bits rest_bits g m s x' y' z'); try easy. apply Hfine. now apply at_index_In in A. }
       assert (0 < IZR q) as Q' by now apply IZR_lt.
-      assert (w j * image_of j (x j) <= w j * in_units (k + 1) (extremum (listed s) c)) as E'
-        by now apply Rmult_le_compat_l.
+      assert (w j * image_of g j (x j) <= w j * in_units (k + 1) u) as E' by now apply Rmult_le_compat_l.
       rewrite D in T. nra.
   Qed.
 
@@ -243,48 +265,54 @@ Section Dual.
     - cbn [snd]. apply Z.ltb_lt.
   Qed.
 
-  Lemma above_dual_sound s bound lambda : above_dual k (listed s) t bound lambda = true ->
+  Lemma above_dual_sound s g b es bound lambda : Forall2 (matches s g b) (interval_list (weights s)) es ->
+    above_dual k b es (Some bound) lambda = true ->
     blends_enclosed g ms (box_of rest_bits s) (intervals_of s) (value bound).
   Proof.
-    unfold above_dual. rewrite andb_true_iff. intros [M E]. apply multiplier_positive in M.
+    intro F. unfold above_dual. rewrite andb_true_iff. intros [M E]. apply multiplier_positive in M.
     destruct (multiplier_in_units (k + 1) lambda) as [p q]. cbn [snd] in M.
-    destruct (dual_sum (listed s) t p q) as [n |] eqn:S; [| easy].
     apply at_least_sound in E. intros w x W One B.
     assert (value (Dyadic (man bound * q) (exn bound)) = IZR q * value bound) as V.
     { unfold value. cbn [man exn]. rewrite mult_IZR. ring. }
-    rewrite V, in_units_add in E.
+    rewrite V in E.
     assert (in_units (k + 1 + weight_bits) (Z.shiftl p weight_bits) = in_units (k + 1) p) as P.
     { unfold in_units. rewrite IZR_shiftl by easy. rewrite Rmult_assoc, <- bpow_plus. do 2 f_equal. ring. }
-    rewrite P in E.
-    pose proof (dual_sound s p q w x M B (interval_list (weights s)) 0 n) as D.
-    rewrite in_units_0 in D.
+    pose proof (dual_sound s g b p q w x M B (interval_list (weights s)) es (Z.shiftl p weight_bits) F) as D.
+    rewrite P in D.
     assert (forall f : Z -> R, fold_right (fun e sum => f (fst e) + sum) 0 (intervals_of s) =
       fold_right (fun e sum => f (fst e) + sum) 0 (interval_list (weights s))) as Same.
     { intro f. unfold intervals_of. clear. induction (interval_list (weights s)) as [| e l IH]; [easy |].
       cbn [map fold_right fst]. f_equal. exact IH. }
     rewrite (Same w) in One.
     assert (blend g ms w x (intervals_of s) =
-      fold_right (fun e sum => w (fst e) * image_of (fst e) (x (fst e)) + sum) 0 (interval_list (weights s))) as ->.
-    { rewrite <- (Same (fun j => w j * image_of j (x j))). unfold blend.
+      fold_right (fun e sum => w (fst e) * image_of g (fst e) (x (fst e)) + sum) 0 (interval_list (weights s))) as ->.
+    { rewrite <- (Same (fun j => w j * image_of g j (x j))). unfold blend.
       unfold image_of. clear. generalize (intervals_of s). intro l. induction l as [| e l IH]; [easy |].
-      cbn [fold_right]. rewrite IH. now destruct (x (fst e)) as [[a b] c]. }
+      cbn [fold_right]. rewrite IH. now destruct (x (fst e)) as [[a c] d]. }
     rewrite One in D.
     assert (0 < IZR q) as Q by now apply IZR_lt.
     assert (forall j lo hi, In (j, (lo, hi)) (interval_list (weights s)) ->
       0 <= w j /\ in_units weight_bits lo <= w j <= in_units weight_bits hi) as Inside.
     { intros j lo hi I. apply interval_list_In in I.
       apply (W j (Dyadic lo (- weight_bits)) (Dyadic hi (- weight_bits))). apply intervals_In. now exists lo, hi. }
-    specialize (D Inside S). nra.
+    specialize (D Inside). nra.
+  Qed.
+
+  Theorem above_duals_sound s (table_for : direction -> table column) :
+    (forall g j, get (table_for g) j =
+      option_map (fun m => column_of g (map_in_units map_bits rest_bits m)) (at_index ms j)) ->
+    forall gs bs ls, above_duals k (listed s) (map table_for gs) bs ls = true -> forall d g b,
+    nth_error (flat_map (fun g => [g; opposite g]) gs) d = Some g -> nth_error bs d = Some (Some b) ->
+    blends_enclosed g ms (box_of rest_bits s) (intervals_of s) (value b).
+  Proof.
+    intro Ht. induction gs as [| g gs IH]; intros bs ls E d g' b G N; [now destruct d |].
+    cbn [map above_duals] in E. destruct bs as [| b0 [| b1 bs]]; try easy. destruct ls as [| l0 [| l1 ls]]; try easy.
+    destruct (terms (listed s) (table_for g) (intervals (listed s))) as [es |] eqn:T; [| easy].
+    apply (terms_match s g (table_for g) (Ht g)) in T as [P Q].
+    rewrite !andb_true_iff in E. destruct E as [[A C] E].
+    cbn [flat_map app] in G. destruct d as [| [| d]]; cbn [nth_error] in G, N.
+    - injection G as <-. injection N as ->. now apply (above_dual_sound s g along_it es b l0).
+    - injection G as <-. injection N as ->. now apply (above_dual_sound s (opposite g) against_it es b l1).
+    - now apply (IH bs ls E d).
   Qed.
 End Dual.
-
-(* One after the other, per direction *)
-Lemma above_duals_nth k s ts : forall bs ls, above_duals k s ts bs ls = true -> forall d b,
-  nth_error bs d = Some (Some b) ->
-  exists t l, nth_error ts d = Some t /\ above_dual k s t b l = true.
-Proof.
-  induction ts as [| t ts IH]; intros [| [c |] bs] [| l ls]; cbn; try easy; intros E [| d] b N; cbn in N |- *; try easy.
-  - apply andb_true_iff in E as [E _]. injection N as <-. now exists t, l.
-  - apply andb_true_iff in E as [_ E]. now apply (IH bs ls E d b).
-  - apply andb_true_iff in E as [_ E]. now apply (IH bs ls E d b).
-Qed.

@@ -156,7 +156,7 @@ Section Frames.
       rewrite !reversed_map_map, reversed_rev, rev_involutive, <- map_rev, rev_involutive. reflexivity.
     Qed.
 
-    Lemma columns_of_aims : by_duality h = true -> columns a = map (fun g => table_of (map (column_of g) us)) gs.
+    Lemma columns_of_aims : by_duality h = true -> columns a = map (fun g => table_of (map (column_of g) us)) (axes (kdop h)).
     Proof.
       intro D. unfold a, aims_of. cbv zeta. cbn [columns]. change (about s) with h. rewrite D. apply map_ext.
       intro g. now rewrite !reversed_map_map, !reversed_rev, !rev_involutive.
@@ -228,11 +228,9 @@ Section Frames.
       change (spaces_left a) with (spaces s) in S. rewrite S0 in S.
       destruct (spaces_left (after_claims (Z.to_nat i) a)) as [| [sp |] others]; try easy. cbn in S. injection S as ->.
       rewrite B, bits_of_aims, Co, columns_of_aims in H by easy.
-      destruct (above_duals_nth _ _ _ _ _ H d bound N) as (t & lam & T & A).
-      rewrite nth_error_map, G in T. cbn in T. injection T as <-.
-      apply (above_dual_sound ms mb k0 g (table_of (map (column_of g) us)) mb_nonnegative k0_nonnegative maps_fine)
-        with (lambda := lam); [| easy].
-      intro j. rewrite get_table_of. unfold us. rewrite map_map. apply at_index_map.
+      apply (above_duals_sound ms mb k0 mb_nonnegative k0_nonnegative maps_fine s0
+        (fun g => table_of (map (column_of g) us))) with (2 := H) (d := d); [| exact G | exact N].
+      intros e j. rewrite get_table_of. unfold us. rewrite map_map. apply at_index_map.
     Qed.
 
     Lemma length_directions : Z.of_nat (length gs) = kdop h.
