@@ -172,7 +172,8 @@ Proof.
   destruct (entries_value map_bits rest_bits R _ Fz) as (Za & Zb & Zc & Zt).
   unfold extremum, radius, middle, listed, column_of.
   cbn [ga gb gc twice_t sum_x sum_y sum_z extent_x extent_y extent_z unit_x unit_y unit_z map_in_units].
-  rewrite in_units_half, !in_units_add, (in_units_scale _ 2), !in_units_mul, !in_units_abs, !along_value, !in_units_add,
+  rewrite in_units_half, !in_units_add, (in_units_scale _ 2), !in_units_mul, !in_units_abs, !along_value,
+    !in_units_add,
     !in_units_sub.
   rewrite Xa, Xb, Xc, Xt, Ya, Yb, Yc, Yt, Za, Zb, Zc, Zt.
   unfold moved.
@@ -183,7 +184,8 @@ Proof.
   assert (along g (image (row_x m) x y z) (image (row_y m) x y z) (image (row_z m) x y z) = a * x + b * y + c * z + t)
     as ->.
   { unfold a, b, c, t, along, image. destruct g as [[p q] r]. ring. }
-  pose proof (side_extremum a _ _ x X). pose proof (side_extremum b _ _ y Y). pose proof (side_extremum c _ _ z Z). lra.
+  pose proof (side_extremum a _ _ x X). pose proof (side_extremum b _ _ y Y). pose proof (side_extremum c _ _ z Z).
+  lra.
 Qed.
 
 (* ---- Duality ---- *)
@@ -213,7 +215,8 @@ Section Dual.
     - injection E as <-. split; constructor.
     - rewrite Ht in E. destruct (at_index ms j) as [m |] eqn:A; [| easy]. cbn [option_map] in E.
       destruct (terms (listed s) t l) as [es' |]; [| easy]. destruct (IH es' eq_refl) as [P Q].
-      injection E as <-. split; constructor; try easy; (split; [easy |]; split; [easy |]); exists m; (split; [easy |]).
+      injection E as <-. split; constructor; try easy; (split; [easy |]; split; [easy |]); exists m; (split;
+        [easy |]).
       + reflexivity.
       + symmetry. apply extremum_opposite.
   Qed.
@@ -237,7 +240,8 @@ Section Dual.
       set (u := extremum s (map_in_units map_bits rest_bits m) g) in *.
       set (d := (q * u - p)%Z).
       set (v := if (0 <? d)%Z then hi else lo).
-      assert (forall i a c, In (i, (a, c)) l -> 0 <= w i /\ in_units weight_bits a <= w i <= in_units weight_bits c) as W'
+      assert (forall i a c, In (i, (a, c)) l -> 0 <= w i /\ in_units weight_bits a <= w i <= in_units weight_bits c)
+        as W'
         by (intros i a c I; apply (W i a c); now right).
       pose proof (IH es' (n + v * d)%Z F' W') as G.
       cbn [fold_right fst]. rewrite in_units_add in G.

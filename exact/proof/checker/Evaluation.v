@@ -25,7 +25,8 @@ Definition vertex_in_units (rest_bits : Z) (v : vertex) : unit_vertex :=
     (map (fun jw => (fst jw, units weight_bits (snd jw))) (influences v)).
 
 Definition row_in_units (map_bits rest_bits : Z) (r : row) : unit_row :=
-  UnitRow (units map_bits (ra r)) (units map_bits (rb r)) (units map_bits (rc r)) (units (map_bits + rest_bits) (rt r)).
+  UnitRow (units map_bits (ra r)) (units map_bits (rb r)) (units map_bits (rc r))
+    (units (map_bits + rest_bits) (rt r)).
 Definition map_in_units (map_bits rest_bits : Z) (m : affine) : unit_map :=
   let f := row_in_units map_bits rest_bits in UnitMap (f (row_x m)) (f (row_y m)) (f (row_z m)).
 
@@ -65,7 +66,8 @@ Definition rounded_along (g : direction) (x y z : option Z) : option Z :=
   end.
 
 (* Per direction, in units of 2 ^ -(k + 53); None where no finite bound holds *)
-Definition supports_of_vertex (gs : list direction) (k : Z) (t : table unit_map) (v : unit_vertex) : list (option Z) :=
+Definition supports_of_vertex (gs : list direction) (k : Z) (t : table unit_map) (v : unit_vertex) :
+    list (option Z) :=
   let l := resolved t (unit_weights v) in
   let x := unit_sum unit_x v l in
   let y := unit_sum unit_y v l in

@@ -51,7 +51,8 @@ Section Frame.
 
     Section Coordinate.
       Context (pick : affine -> row) (unit_pick : unit_map -> unit_row).
-      Context (Hpick : forall m, unit_pick (map_in_units map_bits rest_bits m) = row_in_units map_bits rest_bits (pick m)).
+      Context (Hpick : forall m, unit_pick (map_in_units map_bits rest_bits m) =
+        row_in_units map_bits rest_bits (pick m)).
       Context (Hno : unit_pick no_unit_map = no_unit_row).
       Context (Hentries : forall m, incl (entries_of_row (pick m)) (entries m)).
 
@@ -85,10 +86,12 @@ Section Frame.
         in_units k (ua q * ux u + ub q * uy u + uc q * uz u + ut q) = image r x y z.
       Proof.
         intro F. destruct (entries_value r F) as (A & B & C & T). fold q in A, B, C, T.
-        rewrite !in_units_add. unfold k. rewrite !in_units_mul, rest_x, rest_y, rest_z, A, B, C. fold k. now rewrite T.
+        rewrite !in_units_add. unfold k. rewrite !in_units_mul, rest_x, rest_y, rest_z, A, B, C. fold k.
+        now rewrite T.
       Qed.
 
-      Lemma computed_image_value (r : row) (q := row_in_units map_bits rest_bits r) : fine map_bits (entries_of_row r) ->
+      Lemma computed_image_value (r : row) (q := row_in_units map_bits rest_bits r) :
+        fine map_bits (entries_of_row r) ->
         option_map (in_units k) (rounded_image k q u) = computed_image r x y z.
       Proof.
         intro F. destruct (entries_value r F) as (A & B & C & T). fold q in A, B, C, T.
@@ -140,7 +143,8 @@ Section Frame.
       computed_coordinate row_x ms v.
     Proof.
       unfold l, computed_coordinate. unfold u at 2. cbn [unit_weights vertex_in_units].
-      rewrite (computed_sum_value row_x); auto; [cbn; now rewrite in_units_0 |]. intros m d I. apply in_or_app. now left.
+      rewrite (computed_sum_value row_x); auto; [cbn; now rewrite in_units_0 |]. intros m d I. apply in_or_app.
+      now left.
     Qed.
     Lemma computed_y : option_map (in_units (k + weight_bits)) (rounded_sum unit_y k u l (Some 0%Z)) =
       computed_coordinate row_y ms v.
@@ -185,7 +189,8 @@ Section Frame.
       - apply Rle_trans with (in_units (k + weight_bits) e); [| apply Rmax_l]. unfold e. rewrite along_value.
         rewrite exact_x, exact_y, exact_z. apply Rle_refl.
       - exists (in_units (k + weight_bits) c). split; [| apply Rmax_r].
-        unfold computed_along. rewrite <- computed_x, <- computed_y, <- computed_z, <- rounded_along_value. now rewrite C.
+        unfold computed_along. rewrite <- computed_x, <- computed_y, <- computed_z, <- rounded_along_value.
+        now rewrite C.
     Qed.
   End Vertex.
 End Frame.

@@ -2,7 +2,8 @@
 (* Checked frames: what their bounds enclose. *)
 From Coq Require Import ZArith List Bool Reals Lia Lra.
 From Flocq Require Import Core.
-From CinchChecker Require Import Content Statement Table Numbers Evaluation Tree Duality Checker NumbersProof TableProof
+From CinchChecker Require Import Content Statement Table Numbers Evaluation Tree Duality Checker NumbersProof
+  TableProof
   EvaluationProof TreeProof DualityProof RunProof SurfaceProof.
 Import ListNotations.
 Open Scope Z_scope.
@@ -85,15 +86,18 @@ Section Frames.
   Qed.
 
   Lemma spaces_shared : by_duality h = true -> spaces s =
-    map (option_map listed) (climb join_space (fun v => option_map space_of (at_index (map (vertex_in_units k0) vs) v))
-      (bv_count h - 1) (rev hs) empty []).
+    map (option_map listed)
+      (climb join_space (fun v => option_map space_of (at_index (map (vertex_in_units k0) vs) v)) (bv_count h - 1)
+      (rev hs) empty []).
   Proof.
     intro D. unfold s, shared, surface_of. cbn [spaces]. rewrite D. unfold spaces_of. fold k0.
     rewrite !reversed_rev, !rev_involutive, !reversed_map_map, !rev_involutive. f_equal.
     assert (forall own own', (forall v, own v = own' v) -> forall l i done out,
-      climb join_space own i l done out = climb join_space own' i l done out) as Same; [| apply Same; intro v; now rewrite get_table_of].
+      climb join_space own i l done out = climb join_space own' i l done out) as Same;
+      [| apply Same; intro v; now rewrite get_table_of].
     intros own own' E. assert (forall vs', joined join_space own vs' = joined join_space own' vs') as J.
-    { intros [| v vs']; [easy |]. cbn. rewrite E. generalize (own' v). induction vs' as [| w vs' IH]; intro o; [easy |].
+    { intros [| v vs']; [easy |]. cbn. rewrite E. generalize (own' v). induction vs' as [| w vs' IH]; intro o;
+        [easy |].
       cbn. now rewrite E, IH. }
     induction l as [| e l IH]; intros i done out; [easy |]. cbn.
     assert (collected join_space own done e = collected join_space own' done e) as -> by (destruct e; cbn; auto).
@@ -156,7 +160,8 @@ Section Frames.
       rewrite !reversed_map_map, reversed_rev, rev_involutive, <- map_rev, rev_involutive. reflexivity.
     Qed.
 
-    Lemma columns_of_aims : by_duality h = true -> columns a = map (fun g => table_of (map (column_of g) us)) (axes (kdop h)).
+    Lemma columns_of_aims : by_duality h = true ->
+      columns a = map (fun g => table_of (map (column_of g) us)) (axes (kdop h)).
     Proof.
       intro D. unfold a, aims_of. cbv zeta. cbn [columns]. change (about s) with h. rewrite D. apply map_ext.
       intro g. now rewrite !reversed_map_map, !reversed_rev, !rev_involutive.
@@ -193,9 +198,11 @@ Section Frames.
         apply (supports_enclose ms mb k0 (table_of us) mb_nonnegative k0_nonnegative maps_fine maps_table x
           (rest_fine x Ix) (weights_fine x Ix) gs e y m Y M).
       - intros b c j K x e y m X Y M. apply greater_supports_nth in M as (p & q & P & Q & ->).
-        apply encloses_more with (in_units (mb + k0 + weight_bits) p); [now apply (K x e y p) | apply in_units_le; lia].
+        apply encloses_more with (in_units (mb + k0 + weight_bits) p); [now apply (K x e y p) |
+          apply in_units_le; lia].
       - intros b c j K x e y m X Y M. apply greater_supports_nth in M as (p & q & P & Q & ->).
-        apply encloses_more with (in_units (mb + k0 + weight_bits) q); [now apply (K x e y q) | apply in_units_le; lia].
+        apply encloses_more with (in_units (mb + k0 + weight_bits) q); [now apply (K x e y q) |
+          apply in_units_le; lia].
       - now rewrite rev_involutive, app_nil_r.
       - rewrite count_rev. unfold hs, count. rewrite map_length. pose proof (bvs_counted _ _ _ _ C) as Bc.
         unfold count in Bc. lia.
@@ -210,7 +217,8 @@ Section Frames.
       exists sp, nth_error (spaces s) (Z.to_nat i) = Some (Some sp).
     Proof.
       intros D I. rewrite <- Hclaims in I. apply at_index_some in I as (cl & L).
-      apply claim_at in L as (_ & K & _ & H). unfold holds_space in H. unfold is_claim in K. apply andb_true_iff in K as [_ K].
+      apply claim_at in L as (_ & K & _ & H). unfold holds_space in H. unfold is_claim in K.
+      apply andb_true_iff in K as [_ K].
       change (about s) with h in K. rewrite D in K. destruct (lambdas cl) as [ls |]; [| easy].
       destruct (after_claims_parts (Z.to_nat i) a) as (_ & _ & _ & S). specialize (S O). rewrite Nat.add_0_r in S.
       destruct (spaces_left (after_claims (Z.to_nat i) a)) as [| [sp |] others]; try easy. cbn in S.
@@ -226,7 +234,8 @@ Section Frames.
       unfold holds_space in H. destruct (lambdas cl) as [ls |]; [| easy].
       destruct (after_claims_parts (Z.to_nat i) a) as (B & Co & _ & S). specialize (S O). rewrite Nat.add_0_r in S.
       change (spaces_left a) with (spaces s) in S. rewrite S0 in S.
-      destruct (spaces_left (after_claims (Z.to_nat i) a)) as [| [sp |] others]; try easy. cbn in S. injection S as ->.
+      destruct (spaces_left (after_claims (Z.to_nat i) a)) as [| [sp |] others]; try easy. cbn in S.
+      injection S as ->.
       rewrite B, bits_of_aims, Co, columns_of_aims in H by easy.
       apply (above_duals_sound ms mb k0 mb_nonnegative k0_nonnegative maps_fine s0
         (fun g => table_of (map (column_of g) us))) with (2 := H) (d := d); [| exact G | exact N].
@@ -252,7 +261,8 @@ Theorem checked_proves c : checked c -> proves c.
 Proof.
   intro H. pose proof H as [C F N Ef Ep Ei Ev]. split.
   - now apply checked_surface_whole.
-  - intros f I. apply F in I as [[K Cl] L]. unfold is_frame in K. rewrite !andb_true_iff in K. destruct K as [[_ M] D].
+  - intros f I. apply F in I as [[K Cl] L]. unfold is_frame in K. rewrite !andb_true_iff in K.
+    destruct K as [[_ M] D].
     apply Z.eqb_eq in M. rewrite size_count in M. split; try easy.
     + intros cl J. apply In_nth_error in J as [n J]. apply Cl in J as [J _]. unfold is_claim in J.
       rewrite !andb_true_iff in J. destruct J as [[J _] _]. apply Z.eqb_eq in J. rewrite size_count in J.
@@ -271,7 +281,8 @@ Proof.
     destruct (claimed_space _ _ _ _ f0 K0 L0 i D R) as [sp Sp].
     destruct (spaces_hold _ _ _ _ C i sp D Sp) as (s0 & -> & Holds); [lia |].
     exists (box_of (finest_rest (rev (vertices c))) s0), (intervals_of s0). split; [apply intervals_NoDup |]. split.
-    + intros k v W V. specialize (Holds k v W V). assert (In v (vertices c)) as Iv by now apply at_index_In in V. split.
+    + intros k v W V. specialize (Holds k v W V). assert (In v (vertices c)) as Iv by now apply at_index_In in V.
+      split.
       * apply holds_box; [| easy]. now apply (rest_fine (vertices c) v).
       * apply (holds_intervals (finest_rest (rev (vertices c)))); [| easy]. now apply (weights_fine _ _ _ _ C v Iv).
     + intros f d g bound I S G. apply F in I as [K _].

@@ -83,7 +83,8 @@ Section Vertex.
 End Vertex.
 
 (* Rows of one coordinate, and weights, as a machine holds those of a vertex *)
-Definition spells_influences (pick : affine -> row) (ms : list affine) (v : vertex) (l : list (ieee_row * double)) : Prop :=
+Definition spells_influences (pick : affine -> row) (ms : list affine) (v : vertex)
+    (l : list (ieee_row * double)) : Prop :=
   Forall2 (fun jw mw => spells_row (row_of pick ms (fst jw)) (fst mw) /\ spells (snd jw) (snd mw)) (influences v) l.
 
 Definition zero : double := B754_zero false.

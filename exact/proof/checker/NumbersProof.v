@@ -86,7 +86,8 @@ Proof. reflexivity. Qed.
 
 Lemma is_double_sound d : is_double d = true -> binary64 d.
 Proof.
-  unfold is_double, most_low_bits, subnormal_bits, overflow_bits, one_weight. rewrite !andb_true_iff, !Z.ltb_lt, Z.leb_le.
+  unfold is_double, most_low_bits, subnormal_bits, overflow_bits, one_weight.
+  rewrite !andb_true_iff, !Z.ltb_lt, Z.leb_le.
   intros [[[M L] U] T]. split.
   - apply generic_format_FLT. exists (Float radix2 (man d) (exn d)); cbn; [reflexivity | | lia].
     exact M.
@@ -211,7 +212,8 @@ Proof.
     assert (Rabs (IZR m) < bpow radix2 (1024 + k) <->
             Rabs (IZR m) * bpow radix2 (- k) < bpow radix2 (1024 + k) * bpow radix2 (- k)) as <-.
     { split; intro L; [now apply Rmult_lt_compat_r | now apply Rmult_lt_reg_r with (bpow radix2 (- k))]. }
-    rewrite abs_lt_bpow by lia. split; [now left |]. intros [L | ->]; [easy |]. change (Z.log2 (Z.abs 0)) with 0%Z. lia. }
+    rewrite abs_lt_bpow by lia. split; [now left |]. intros [L | ->]; [easy |]. change (Z.log2 (Z.abs 0)) with 0%Z.
+    lia. }
   unfold overflow_bits. destruct (Z.ltb_spec (Z.log2 (Z.abs m)) (1024 + k)) as [L | L]; cbn [option_map].
   - rewrite Rlt_bool_true; [reflexivity | now apply E].
   - rewrite Rlt_bool_false; [reflexivity |]. apply Rnot_lt_le. intro B. apply E in B. lia.

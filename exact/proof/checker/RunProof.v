@@ -51,7 +51,8 @@ Record checked (c : content) : Prop := {
 Inductive read : list line -> state -> Prop :=
 | read_start : read [] Start
 | read_surface h vs ts bs :
-    is_header h = true -> (forall v, In v vs -> is_vertex h v = true) -> (forall t, In t ts -> is_triangle h t = true) ->
+    is_header h = true -> (forall v, In v vs -> is_vertex h v = true) ->
+    (forall t, In t ts -> is_triangle h t = true) ->
     (forall i b, at_index (rev bs) i = Some b -> is_bv (bv_count h) i b = true) ->
     read (surface_lines h (rev vs) (rev ts) (rev bs)) (Reading h (count vs) (count ts) (count bs) vs ts bs)
 | read_frames h vs ts bs fs f :
@@ -93,7 +94,8 @@ Proof. unfold count. rewrite app_length. lia. Qed.
 Lemma count_0 {A : Type} (l : list A) : count l = 0 -> l = [].
 Proof. destruct l; [easy |]. unfold count. cbn. lia. Qed.
 
-Lemma count_filter {A : Type} (f : A -> bool) l : count (filter f l) + count (filter (fun x => negb (f x)) l) = count l.
+Lemma count_filter {A : Type} (f : A -> bool) l : count (filter f l) + count (filter (fun x => negb (f x)) l) = count
+  l.
 Proof.
   unfold count. induction l as [| x l IH]; [reflexivity |]. cbn. destruct (f x); cbn [negb length]; lia.
 Qed.
@@ -128,7 +130,8 @@ Proof.
     exact (read_surface h [] [] [] B (fun v I => match I with end) (fun t I => match I with end)
       ltac:(intros [| p | p] b; cbn; try easy; unfold at_index; cbn; now destruct (Pos.to_nat p))).
   - destruct l as [| i v | i t | i b | i t m | |]; try discriminate E; cbn [step] in E.
-    + split_checks E. subst i. assert (ts = []) as -> by now apply count_0. assert (bs = []) as -> by now apply count_0.
+    + split_checks E. subst i. assert (ts = []) as -> by now apply count_0.
+      assert (bs = []) as -> by now apply count_0.
       replace (surface_lines h (rev vs) (rev []) (rev []) ++ [LVertex (count vs) v])
         with (surface_lines h (rev (v :: vs)) (rev []) (rev [])).
       2: { unfold surface_lines. cbn [rev numbered app]. rewrite !app_nil_r, numbered_snoc, count_rev. reflexivity. }

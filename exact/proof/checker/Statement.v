@@ -99,7 +99,8 @@ Record convex (nodes : Z) (v : vertex) : Prop := {
 
 Definition binary64_point (p : point) : Prop := binary64 (px p) /\ binary64 (py p) /\ binary64 (pz p).
 Definition binary64_row (r : row) : Prop := binary64 (ra r) /\ binary64 (rb r) /\ binary64 (rc r) /\ binary64 (rt r).
-Definition binary64_map (m : affine) : Prop := binary64_row (row_x m) /\ binary64_row (row_y m) /\ binary64_row (row_z m).
+Definition binary64_map (m : affine) : Prop := binary64_row (row_x m) /\ binary64_row (row_y m) /\
+  binary64_row (row_z m).
 
 Record whole_surface (c : content) : Prop := {
   all_vertices : count (vertices c) = vertex_count (head c);
@@ -131,7 +132,8 @@ Definition states (f : frame) (i : Z) (d : nat) (bound : dyadic) : Prop :=
   exists cl, at_index (claims f) i = Some cl /\ nth_error (bounds cl) d = Some (Some bound).
 
 Definition vertices_enclosed (c : content) : Prop :=
-  forall f i d g bound k v, In f (frames c) -> states f i d bound -> nth_error (directions (kdop (head c))) d = Some g ->
+  forall f i d g bound k v, In f (frames c) -> states f i d bound -> nth_error (directions (kdop (head c))) d = Some
+    g ->
     below (bvs c) (triangles_of c) i k -> at_index (vertices c) k = Some v -> encloses g (maps f) v (value bound).
 
 (* Of a BV: a rest box, and per simulation node the least and the greatest weight *)
@@ -152,7 +154,8 @@ Definition weights_within (l : list interval) (v : vertex) : Prop :=
 (* Any convex weights of the intervals, and per simulation node any point of the box *)
 Definition blend (g : direction) (ms : list affine) (w : Z -> R) (x : Z -> R * R * R) (l : list interval) : R :=
   fold_right (fun e s => let j := fst e in let '(a, b, c) := x j in
-    w j * along g (image (row_of row_x ms j) a b c) (image (row_of row_y ms j) a b c) (image (row_of row_z ms j) a b c)
+    w j * along g (image (row_of row_x ms j) a b c) (image (row_of row_y ms j) a b c) (image (row_of row_z ms j) a b
+      c)
     + s) 0 l.
 
 Definition blends_enclosed (g : direction) (ms : list affine) (b : box) (l : list interval) (bound : R) : Prop :=
@@ -173,7 +176,8 @@ Definition spaces_enclosed (c : content) : Prop :=
 
 (* ---- Frames and the end ---- *)
 
-Definition all_bounds (c : content) : list (option dyadic) := flat_map (fun f => flat_map bounds (claims f)) (frames c).
+Definition all_bounds (c : content) : list (option dyadic) := flat_map (fun f => flat_map bounds (claims f)) (frames
+  c).
 
 Record whole_frame (c : content) (f : frame) : Prop := {
   all_maps : count (maps f) = node_count (head c);

@@ -18,7 +18,8 @@ Qed.
 
 Lemma is_vertex_weights h v : is_vertex h v = true -> forall j w, In (j, w) (influences v) -> is_weight w = true.
 Proof.
-  unfold is_vertex. rewrite !andb_true_iff. intros [[_ N] _] j w I. apply are_nodes_sound in N as [A _]. now apply A in I.
+  unfold is_vertex. rewrite !andb_true_iff. intros [[_ N] _] j w I. apply are_nodes_sound in N as [A _].
+  now apply A in I.
 Qed.
 
 Lemma is_vertex_nodes h v : is_vertex h v = true -> forall j w, In (j, w) (influences v) -> 0 <= j < node_count h.
@@ -65,7 +66,8 @@ Section Checked.
 
   Lemma header_parts : In (kdop h) [6; 14; 18; 26] /\ 1 <= triangle_count h /\ 1 <= bv_count h /\ 1 <= frame_count h.
   Proof.
-    pose proof (header_checked _ _ _ _ C) as H. unfold is_header in H. rewrite !andb_true_iff, !orb_true_iff, !Z.eqb_eq in H.
+    pose proof (header_checked _ _ _ _ C) as H. unfold is_header in H. rewrite !andb_true_iff, !orb_true_iff,
+      !Z.eqb_eq in H.
     destruct H as [[[[[K V] T] N] B] F]. apply is_count_positive in T, B, F. cbn. intuition.
   Qed.
 
@@ -96,7 +98,8 @@ Proof.
   - lia.
   - intros v I. apply C in I. unfold is_vertex in I. rewrite !andb_true_iff in I. now apply is_point_doubles.
   - intros v I. apply is_vertex_convex. now apply C.
-  - intros t v I V. apply C in I. unfold is_triangle, is_corner in I. rewrite !andb_true_iff, !Z.leb_le, !Z.ltb_lt in I.
+  - intros t v I V. apply C in I. unfold is_triangle, is_corner in I. rewrite !andb_true_iff, !Z.leb_le,
+      !Z.ltb_lt in I.
     destruct V as [-> | [-> | ->]]; lia.
   - now apply (tree_triangles _ _ _ _ C).
   - intros l I. apply In_at_index in I as [i I]. apply C in I. now destruct l.

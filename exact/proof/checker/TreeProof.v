@@ -93,7 +93,8 @@ Proof.
   induction l as [| a l IH]; intros N n m x y X Y CX CY; [now destruct n |]. cbn in N.
   assert (forall k z, nth_error l k = Some z -> In c (f z) -> ~ In c (f a)) as Apart.
   { intros k z Z CZ CA. apply in_split in CA as (p & q & E). rewrite E in N.
-    rewrite <- app_assoc in N. cbn in N. apply NoDup_remove_2 in N. apply N. rewrite app_assoc. apply in_or_app. right.
+    rewrite <- app_assoc in N. cbn in N. apply NoDup_remove_2 in N. apply N. rewrite app_assoc. apply in_or_app.
+    right.
     apply in_flat_map. exists z. split; [now apply nth_error_In with k | easy]. }
   destruct n as [| n], m as [| m]; cbn in X, Y.
   - easy.
@@ -125,7 +126,8 @@ Section OneTree.
 
   Lemma children_differ i a b : at_index bs i = Some (Inner a b) -> a <> b.
   Proof.
-    intros E ->. apply at_index_In in E. apply in_split in E as (p & q & ->). rewrite flat_map_app in Hnodup. cbn in Hnodup.
+    intros E ->. apply at_index_In in E. apply in_split in E as (p & q & ->). rewrite flat_map_app in Hnodup.
+    cbn in Hnodup.
     apply NoDup_after in Hnodup. inversion Hnodup as [| h t N D]. apply N. now left.
   Qed.
 

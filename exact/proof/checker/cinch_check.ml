@@ -1,6 +1,7 @@
 (* SPDX-License-Identifier: GPL-3.0-or-later *)
 (* cinch-check [CERTIFICATE]: from a file or standard input, not compressed. Status 0 accepted, 1 rejected, 2 usage. *)
-let usage = "usage: cinch-check [CERTIFICATE]   (a file, not compressed; or standard input: zcat c.jsonl.gz | cinch-check)"
+let usage =
+  "usage: cinch-check [CERTIFICATE]\n\nA file, not compressed, or standard input: zcat c.jsonl.gz | cinch-check"
 let longest_line = 1 lsl 28
 
 let reason why =
@@ -27,7 +28,8 @@ let check input =
   let rec next () =
     match input_line input with
     | exception End_of_file ->
-      if !state = Checker.Done then Ok (hashes, !last) else (incr number; refuse "the file ends before the last record")
+      incr number;
+      if !state = Checker.Done then Ok (hashes, !last) else refuse "the file ends before the last record"
     | line ->
       incr number;
       if String.length line >= longest_line then refuse "a line that is too long"
@@ -53,8 +55,12 @@ let () =
   let name, input =
     match Array.to_list Sys.argv with
     | [ _ ] -> "standard input", stdin
-    | [ _; name ] when name = "" || name.[0] <> '-' -> (
-      name, try open_in_bin name with Sys_error why -> print_endline (name ^ ": rejected: not readable: " ^ why); exit 1)
+    | [ _; name ] when name = "" || name.[0] <> '-' ->
+      ( name,
+        try open_in_bin name
+        with Sys_error why ->
+          print_endline (name ^ ": rejected: not readable: " ^ why);
+          exit 1 )
     | [ _; "--help" ] -> print_endline usage; exit 0
     | _ -> prerr_endline usage; exit 2
   in

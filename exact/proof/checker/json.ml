@@ -32,8 +32,10 @@ let check_utf_8 s =
       let b = byte i and c = byte (i + 1) in
       if b < 0x80 then go (i + 1)
       else if b >= 0xc2 && b < 0xe0 && tail 1 then go (i + 2)
-      else if b land 0xf0 = 0xe0 && tail 1 && tail 2 && (b <> 0xe0 || c >= 0xa0) && (b <> 0xed || c < 0xa0) then go (i + 3)
-      else if b >= 0xf0 && b <= 0xf4 && tail 1 && tail 2 && tail 3 && (b <> 0xf0 || c >= 0x90) && (b <> 0xf4 || c < 0x90)
+      else if b land 0xf0 = 0xe0 && tail 1 && tail 2 && (b <> 0xe0 || c >= 0xa0) && (b <> 0xed || c < 0xa0) then
+        go (i + 3)
+      else if
+        b >= 0xf0 && b <= 0xf4 && tail 1 && tail 2 && tail 3 && (b <> 0xf0 || c >= 0x90) && (b <> 0xf4 || c < 0x90)
       then go (i + 4)
       else refuse "not UTF-8"
     end

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is done to the text of a certificate to have a reader take it for another: name -> (change of bytes, verdict)."""
+"""What is done to the text of a certificate to have a reader take it for another: name -> (change, verdict)."""
 import re
 
 ACCEPTED, REJECTED = 0, 1
@@ -121,8 +121,10 @@ for name, wanted, spelt in (
     ("a bound below, beside the real one", REJECTED, lambda x: x + b'", "-0x1p+100'),
 ):
     number(f"a bound: {name}", wanted, spelt)
-attack("an infinite bound as a number", REJECTED, lambda data: re.sub(rb'"bounds": \["[^"]*"', b'"bounds": [1e999', data, 1))
-attack("bounds as an object", REJECTED, lambda data: re.sub(rb'"bounds": \[("[^"]*"), ', rb'"bounds": [{"x": \1}, ', data, 1))
+attack("an infinite bound as a number", REJECTED,
+       lambda data: re.sub(rb'"bounds": \["[^"]*"', b'"bounds": [1e999', data, count=1))
+attack("bounds as an object", REJECTED,
+       lambda data: re.sub(rb'"bounds": \[("[^"]*"), ', rb'"bounds": [{"x": \1}, ', data, count=1))
 attack("minus zero as time", REJECTED, swapped(b'"time": "0x0.0p+0"', b'"time": "-0x0p+0"'))  # the hash is another
 attack("time as a number", REJECTED, swapped(b'"time": "0x0.0p+0"', b'"time": 0'))
 attack("zero in other words", ACCEPTED, swapped(b'"time": "0x0.0p+0"', b'"time": "0x0.000p-99999"'))

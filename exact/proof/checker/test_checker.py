@@ -161,7 +161,8 @@ class CheckerTest(unittest.TestCase):
             for n in range(150):
                 i = rng.randrange(len(data))
                 damaged = rng.choice((data[:i], data[:i] + bytes([data[i] ^ 1 << rng.randrange(8)]) + data[i + 1:],
-                                      data[:i] + data[i + rng.randrange(1, 300):], data[:i] + data[i:i + 1] + data[i:]))
+                                      data[:i] + data[i + rng.randrange(1, 300):],
+                                      data[:i] + data[i:i + 1] + data[i:]))
                 self.verdicts(damaged, f"{method}: damage {n}")
 
     def test_overflow_on_the_way_is_no_finite_bound(self):
@@ -197,7 +198,8 @@ class CheckerTest(unittest.TestCase):
                                      "--method support+limited", "--method limited+eq12")):
             path = os.path.join(self.folder.name, f"{i}.jsonl")
             done = subprocess.run([CINCH, "verify", self.mesh, "--nodes", "6", "--frames", "2", "--leaf", "4",
-                                   *options.split(), "--certificate", path], capture_output=True, text=True, check=False)
+                                   *options.split(), "--certificate", path],
+                                  capture_output=True, text=True, check=False)
             self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
             with open(path, encoding="ascii") as file:
                 records = [json.loads(line) for line in file]
