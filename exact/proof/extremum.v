@@ -336,7 +336,7 @@ Proof.
     by (apply Rmult_le_compat; lra).
   assert (MP : 0 <= most).
   { apply Rle_trans with (2 := L). now apply magnitude_nonnegative. }
-  rewrite model_extremum_error.
+  rewrite (model_extremum_error prec emin).
   assert (K : (0 <= 10 < 2 ^ prec)%Z) by (split; [lia |]; pose proof (@prec_large prec emin format);
     apply Z.lt_le_trans with (2 ^ 24)%Z; [reflexivity | apply Z.pow_le_mono_r; lia]).
   pose proof (error_term prec emin 10 16 most K MP) as T.
