@@ -160,6 +160,9 @@ Definition evaluate_row (x : triple num) (r : row) : num :=
   add o (dot3 (column r) x) (offset r).
 Definition evaluate_coordinate (x : triple num) (nodes : list (num * row)) : num :=
   fold_left (fun sum n => add o sum (mul o (fst n) (evaluate_row x (snd n)))) nodes zero.
+Definition evaluate_vertex (x : triple num) (nodes : list (num * map_rows)) : triple num :=
+  let coordinate (f : map_rows -> row) := evaluate_coordinate x (map (fun n => (fst n, f (snd n))) nodes) in
+  Triple _ (coordinate (at0 _)) (coordinate (at1 _)) (coordinate (at2 _)).
 End Model.
 
 Arguments Entry {num}. Arguments entry_l {num}. Arguments entry_h {num}. Arguments entry_b {num}.
