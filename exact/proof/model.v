@@ -163,6 +163,35 @@ Definition evaluate_coordinate (x : triple num) (nodes : list (num * row)) : num
 Definition evaluate_vertex (x : triple num) (nodes : list (num * map_rows)) : triple num :=
   let coordinate (f : map_rows -> row) := evaluate_coordinate x (map (fun n => (fst n, f (snd n))) nodes) in
   Triple _ (coordinate (at0 _)) (coordinate (at1 _)) (coordinate (at2 _)).
+
+(* collide/orientation.cpp: determinants of computed differences, and their filters. *)
+Definition difference (a b : triple num) : triple num :=
+  Triple _ (sub o (at0 _ b) (at0 _ a)) (sub o (at1 _ b) (at1 _ a)) (sub o (at2 _ b) (at2 _ a)).
+Definition minor (a b c d : num) : num := sub o (mul o a b) (mul o c d).
+Definition determinant3 (p q r : triple num) : num :=
+  add o (sub o (mul o (at0 _ p) (minor (at1 _ q) (at2 _ r) (at2 _ q) (at1 _ r)))
+               (mul o (at0 _ q) (minor (at1 _ p) (at2 _ r) (at2 _ p) (at1 _ r))))
+        (mul o (at0 _ r) (minor (at1 _ p) (at2 _ q) (at2 _ p) (at1 _ q))).
+Definition determinant2 (p0 p1 q0 q1 : num) : num := minor p0 q1 p1 q0.
+Inductive verdict := Negative | Zero | Positive | Undecided.
+(* The greatest computed difference of each coordinate; in double the range is 2^-320 to 2^320. *)
+Definition filtered_sign (units range : Z) (computed : num) (greatest : list num) : verdict :=
+  let error := fold_left (mul o) greatest (constant o units (- precision o)) in
+  if existsb (fun x => less_equal o x zero) greatest then Zero
+  else if forallb (fun x => less_equal o (constant o 1 (- range)) x && less_equal o x (constant o 1 range)) greatest
+  then if less o error computed then Positive
+       else if less o computed (sub o zero error) then Negative else Undecided
+  else Undecided.
+Definition greatest3 (a b c : num) : num := max (max (absolute o a) (absolute o b)) (absolute o c).
+Definition filter3 (range : Z) (a b c d : triple num) : verdict :=
+  let p := difference a b in let q := difference a c in let r := difference a d in
+  filtered_sign 49 range (determinant3 p q r)
+    [greatest3 (at0 _ p) (at0 _ q) (at0 _ r); greatest3 (at1 _ p) (at1 _ q) (at1 _ r);
+     greatest3 (at2 _ p) (at2 _ q) (at2 _ r)].
+Definition filter2 (range : Z) (a0 a1 b0 b1 c0 c1 : num) : verdict :=
+  let p0 := sub o b0 a0 in let p1 := sub o b1 a1 in let q0 := sub o c0 a0 in let q1 := sub o c1 a1 in
+  filtered_sign 9 range (determinant2 p0 p1 q0 q1)
+    [max (absolute o p0) (absolute o q0); max (absolute o p1) (absolute o q1)].
 End Model.
 
 Arguments Entry {num}. Arguments entry_l {num}. Arguments entry_h {num}. Arguments entry_b {num}.
