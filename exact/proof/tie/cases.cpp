@@ -12,6 +12,7 @@
 #include "toolkit/bounds/bound_box.hpp"
 #include "toolkit/bounds/rounding.hpp"
 #include "toolkit/bounds/weight_space.hpp"
+#include "toolkit/collide/orientation.hpp"
 
 namespace {
 
@@ -147,7 +148,7 @@ void boxes(std::size_t count)
         const std::size_t n = 1 + below(4);
         // Where everything is ordinary nothing is lost early: three in four.
         const Kind kind = below(4) ? (below(2) ? ordinary : ties) : any_kind();
-        const std::vector<AffineMap> maps = some_maps(n, kind);
+        std::vector<AffineMap> maps = some_maps(n, kind);
         intervals(l, h, n);
         node.resize(n);
         for (std::size_t j = 0; j < n; ++j)
@@ -156,6 +157,13 @@ void boxes(std::size_t count)
         for (int s = 0; s < 3; ++s) {
             bv.box.centre[s] = number(kind);
             bv.box.half[s] = std::abs(number(kind));
+        }
+        if (below(16) == 0) { // 0 times infinity in the magnitude alone
+            const int s = static_cast<int>(below(3));
+            bv.box.centre[s] = bv.box.half[s] = std::numeric_limits<double>::max();
+            for (AffineMap& map : maps)
+                for (auto& row : map.m)
+                    row[s] = 0;
         }
         bv.node = node;
         bv.space = {l, h};
@@ -221,6 +229,48 @@ void vertices(std::size_t count)
     }
 }
 
+/// Signs of determinants, and whether the filter decided them. Often nearly 0: the last point lies near the plane.
+void signs(std::size_t count)
+{
+    for (std::size_t i = 0; i < count; ++i) {
+        const Kind kind = below(4) ? (below(2) ? ordinary : ties) : any_kind();
+        Vec3 point[4];
+        for (Vec3& p : point)
+            for (int s = 0; s < 3; ++s)
+                do
+                    p[s] = number(kind);
+                while (!std::isfinite(p[s]));
+        if (below(2)) {
+            const double a = unit(), b = unit();
+            const Vec3 flat = point[0] + a * (point[1] - point[0]) + b * (point[2] - point[0]);
+            if (flat.allFinite())
+                point[3] = flat;
+        }
+        OrientationCounts counts;
+        const int sign = orientation(point[0], point[1], point[2], point[3], &counts);
+        std::printf("filter3");
+        for (const Vec3& p : point)
+            for (int s = 0; s < 3; ++s)
+                put(p[s]);
+        std::printf(" %d\n", counts.in_double ? sign : 2);
+        Vec2 q[3];
+        for (int k = 0; k < 3; ++k)
+            q[k] = point[k].head<2>();
+        if (below(2)) {
+            const Vec2 flat = q[0] + unit() * (q[1] - q[0]);
+            if (flat.allFinite())
+                q[2] = flat;
+        }
+        OrientationCounts counts2;
+        const int sign2 = orientation(q[0], q[1], q[2], &counts2);
+        std::printf("filter2");
+        for (const Vec2& p : q)
+            for (int s = 0; s < 2; ++s)
+                put(p[s]);
+        std::printf(" %d\n", counts2.in_double ? sign2 : 2);
+    }
+}
+
 } // namespace
 
 int main(int argc, char** argv)
@@ -233,4 +283,5 @@ int main(int argc, char** argv)
     duals(count);
     boxes((count + 1) / 2); // two sides each
     vertices(count);
+    signs(count);
 }

@@ -55,6 +55,12 @@ let reader words =
 let triple f = let at0 = f () in let at1 = f () in let at2 = f () in { at0; at1; at2 }
 let many n f = List.init n (fun _ -> f ())
 
+(* A verdict as a number, so that it can be compared as the others are. *)
+let range = z 320
+let decided a verdict sign =
+  let number = match verdict with Negative -> -1 | Zero -> 0 | Positive -> 1 | Undecided -> 2 in
+  [ (a.ops.constant (z number) (z 0), a.ops.constant (z sign) (z 0)) ]
+
 (* What the model makes of a line and what the compiled function made of it. *)
 let results a words =
   let word = reader words in
@@ -105,6 +111,12 @@ let results a words =
     let v = evaluate_vertex a.ops x nodes in
     let c = triple num in
     [ (v.at0, c.at0); (v.at1, c.at1); (v.at2, c.at2) ]
+  | "filter3" ->
+    let p = triple num in let q = triple num in let r = triple num in let s = triple num in
+    decided a (filter3 a.ops range p q r s) (int ())
+  | "filter2" ->
+    let p = num () in let p' = num () in let q = num () in let q' = num () in let r = num () in let r' = num () in
+    decided a (filter2 a.ops range p p' q q' r r') (int ())
   | _ -> raise (Bad ("no function " ^ name))
 
 let differing = ref 0
@@ -135,7 +147,7 @@ let () =
      done
    with End_of_file -> ());
   let functions = [ "succ"; "succ32"; "smallest_times32"; "extremum_error"; "evaluation_error"; "sum_error";
-                    "second_largest"; "dual_bound"; "bound_box"; "evaluate_vertex" ] in
+                    "second_largest"; "dual_bound"; "bound_box"; "evaluate_vertex"; "filter3"; "filter2" ] in
   let short = List.filter (fun name ->
     let n, s = try Hashtbl.find seen name with Not_found -> (0, 0) in
     Printf.printf "%-18s %7d cases, %6d of them in Flocq's arithmetic\n" name n s;
