@@ -1,6 +1,7 @@
 (* SPDX-License-Identifier: GPL-3.0-or-later *)
 (* bound_box of toolkit/bounds/bound_box.cpp over IEEE values: a finite support is at least every vertex of the BV, exact
-   and as evaluate_vertex computes it, along every axis and against it, for convex, eq12 and limited. *)
+   and as evaluate_vertex computes it, along every axis and against it, for convex, eq12 and limited. (For corners it is
+   not true of numbers near overflow; README.md.) *)
 From Coq Require Import Reals Lra Lia ZArith List Bool Permutation.
 From Flocq Require Import Core.
 From CinchProof Require Import duality geometry rounding successor model real_model dual_bound extremum evaluation
@@ -116,14 +117,14 @@ Proof.
   apply A. rewrite <- M. now apply in_map.
 Qed.
 
-Theorem methods_sound how : IZR (length_of nodes) * u <= / 8 ->
+Theorem methods_sound how : how <> corners -> IZR (length_of nodes) * u <= / 8 ->
   Forall (fun n => finite (extremum_at n) \/ view (extremum_at n) = Plus) nodes -> nodes <> [] ->
   sound (box_free_bound o how nodes (map extremum_at nodes)).
 Proof.
-  intros N F Ne. unfold box_free_bound. destruct (map extremum_at nodes) as [| b0 others] eqn:E.
+  intros How N F Ne. unfold box_free_bound. destruct (map extremum_at nodes) as [| b0 others] eqn:E.
   - apply map_eq_nil in E. congruence.
   - pose proof (greatest_sound b0 others E F) as G. rewrite <- E.
-    destruct how as [| | lambda]; [exact G | |].
+    destruct how as [| | lambda |]; [exact G | | | congruence].
     + apply min_sound; [exact G | now apply dual_sound].
     + apply min_sound; [apply min_sound; [exact G | now apply dual_sound] | now apply dual_sound].
 Qed.
@@ -201,7 +202,7 @@ Proof.
 Qed.
 
 Theorem bound_box_sound how along axis b k nodes x weights row :
-  is_axis axis -> good_box (view := view) b -> few_influences k -> IZR (length_of nodes) * u <= / 8 ->
+  how <> corners -> is_axis axis -> good_box (view := view) b -> few_influences k -> IZR (length_of nodes) * u <= / 8 ->
   vertex_of_bv b k nodes x weights row ->
   finite (bound_box o how along axis b (Z.of_nat k) nodes) ->
   let support := val (bound_box o how along axis b (Z.of_nat k) nodes) in
@@ -210,7 +211,7 @@ Theorem bound_box_sound how along axis b k nodes x weights row :
   (all_finite (view := view) (evaluate_vertex o x row) ->
    dot (direction along axis) (point_of (triple_value (evaluate_vertex o x row))) <= support).
 Proof.
-  intros A B K N V F support. unfold support, bound_box in *. clear support.
+  intros How A B K N V F support. unfold support, bound_box in *. clear support.
   destruct forallb; [| now apply (infinity_not_finite prec emin I) in F].
   destruct (less o (largest_magnitude o axis b (map influence_map nodes)) (infinity o)) eqn:LM;
     [| now apply (infinity_not_finite prec emin I) in F].
@@ -232,7 +233,7 @@ Proof.
   { intros E. rewrite E in VN. apply map_eq_nil in VN. subst weights. unfold sum in VS. simpl in VS. lra. }
   assert (E : Forall (fun n => finite (extremum_at n) \/ view (extremum_at n) = Plus) nodes).
   { apply Forall_impl with (2 := L). intros n (Fm & _). now apply (extremum_finite_or_plus prec emin I). }
-  destruct (methods_sound nodes extremum_at how N E Ne FB) as (FE & SB). fold bound in SB.
+  destruct (methods_sound nodes extremum_at how How N E Ne FB) as (FE & SB). fold bound in SB.
   assert (BN : box_number prec emin (box_value b)).
   { destruct B as (_ & _ & P). split; [| split]; [| | exact P]; repeat split; apply (val_number prec emin I). }
   assert (MN : forall m, map_number prec emin (map_value m)) by (intros m; repeat split; apply (val_number prec emin I)).

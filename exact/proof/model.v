@@ -76,6 +76,31 @@ Definition second_largest (b : num) (others : list num) : num :=
 (* std::max_element. *)
 Definition greatest (b : num) (others : list num) : num := fold_left max others b.
 
+(* bound_box.cpp, best_corner(): of each entry with the others, in order. *)
+Fixpoint picks {A} (before after : list A) : list (A * list A) :=
+  match after with [] => [] | a :: r => (a, before ++ r) :: picks (before ++ [a]) r end.
+Definition corner_value (base slack : num) (i j : entry) : num :=
+  let range := sub o (entry_h i) (entry_l i) in
+  add o (add o base (mul o range (entry_b i))) (mul o (sub o slack range) (entry_b j)).
+Definition corner_base (nodes : list entry) : num :=
+  fold_left (fun s n => add o s (mul o (entry_l n) (entry_b n))) nodes zero.
+Definition corner_slack (nodes : list entry) : num := fold_left (fun s n => sub o s (entry_l n)) nodes (constant o 1 0).
+Definition corner_magnitude (nodes : list entry) : num :=
+  fold_left (fun s n => max s (absolute o (entry_b n))) nodes zero.
+Definition best_of_corners (nodes : list entry) : num :=
+  let base := corner_base nodes in let slack := corner_slack nodes in
+  fold_left (fun best p => fold_left (fun best j => max best (corner_value base slack (fst p) j)) (snd p) best)
+            (picks [] nodes) lowest.
+Definition corner_error (nodes : list entry) : num :=
+  let n := constant o (length_of nodes) 0 in
+  succ (add o (mul o (mul o (mul o (constant o 4 0) (add o n (constant o 8 0))) unit_roundoff) (corner_magnitude nodes))
+              (mul o (mul o (constant o 2 0) n) (smallest_times 1))).
+Definition best_corner (nodes : list entry) : num :=
+  match nodes with
+  | [n] => entry_b n
+  | _ => succ (add o (best_of_corners nodes) (corner_error nodes))
+  end.
+
 (* deform: an affine map by rows, a box by centre and half extents, an axis of components -1, 0 and 1. *)
 Record triple (A : Type) := Triple { at0 : A; at1 : A; at2 : A }.
 Record row := Row { column : triple num; offset : num }.
@@ -126,9 +151,9 @@ Definition largest_magnitude (axis : triple Z) (b : box) (maps : list map_rows) 
   let all := map (extremum_magnitude axis b) maps in
   if forallb (fun x => less o x (infinity o)) all then fold_left max all zero else infinity o.
 
-(* bound_box.cpp: convex, eq12 and limited of one axis and side. `lambda` is what best_lambda chooses, if anything. *)
+(* bound_box.cpp: one axis and side. `lambda` is what best_lambda chooses, if anything. *)
 Record influence := Influence { influence_l : num; influence_h : num; influence_map : map_rows }.
-Inductive method := convex | eq12 | limited (lambda : num).
+Inductive method := convex | eq12 | limited (lambda : num) | corners.
 Definition entries (nodes : list influence) (b : list num) : list entry :=
   map (fun p => Entry (influence_l (fst p)) (influence_h (fst p)) (snd p)) (combine nodes b).
 Definition box_free_bound (how : method) (nodes : list influence) (b : list num) : num :=
@@ -139,6 +164,7 @@ Definition box_free_bound (how : method) (nodes : list influence) (b : list num)
     let second := min most (dual_bound (second_largest b0 others) (entries nodes b)) in
     match how with
     | convex => most
+    | corners => best_corner (entries nodes b)
     | eq12 => second
     | limited lambda => min second (dual_bound lambda (entries nodes b))
     end
@@ -199,4 +225,4 @@ Arguments Triple {A}. Arguments at0 {A}. Arguments at1 {A}. Arguments at2 {A}.
 Arguments Row {num}. Arguments column {num}. Arguments offset {num}.
 Arguments Box {num}. Arguments centre {num}. Arguments half {num}.
 Arguments Influence {num}. Arguments influence_l {num}. Arguments influence_h {num}. Arguments influence_map {num}.
-Arguments convex {num}. Arguments eq12 {num}. Arguments limited {num}.
+Arguments convex {num}. Arguments eq12 {num}. Arguments limited {num}. Arguments corners {num}.

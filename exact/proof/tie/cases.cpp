@@ -169,8 +169,8 @@ void boxes(std::size_t count)
         bv.space = {l, h};
         bv.vertex_influences = static_cast<std::uint32_t>(1 + below(12));
         const Axis axis = all_axes[below(all_axes.size())];
-        const Method methods[] = {Method::convex, Method::eq12, Method::limited};
-        const std::size_t method = below(3);
+        const Method methods[] = {Method::convex, Method::eq12, Method::limited, Method::corners};
+        const std::size_t method = below(4);
         double supports[2];
         bound_box(bv, maps, methods[method], Rounding::proven, std::span(&axis, 1), scratch, supports);
         const double lambda[] = {best_lambda(bv.space, scratch.plus, scratch.select),

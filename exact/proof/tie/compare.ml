@@ -100,7 +100,7 @@ let results a words =
       let influence_l = num () in let influence_h = num () in { influence_l; influence_h; influence_map = map () }) in
     let b = many n num in
     let computed = int () = 1 in
-    let how = match how with 0 -> Convex | 1 -> Eq12 | _ -> Limited lambda in
+    let how = match how with 0 -> Convex | 1 -> Eq12 | 2 -> Limited lambda | _ -> Corners in
     let support = num () in
     (bound_box a.ops how along axis box (z influences) nodes, support)
     :: (if computed then List.map2 (fun n b -> (extremum_of a.ops along axis box n.influence_map, b)) nodes b else [])
