@@ -35,9 +35,11 @@ Lemma sum_of_row (f : map_rows (num := R) -> R) weights row : is_row weights row
   sum (fun p => snd p * f (influence_map (fst p))) weights = sum (fun n => fst n * f (snd n)) row.
 Proof.
   intros (zeros & P & Z0).
-  transitivity (sum (fun n : R * map_rows => fst n * f (snd n)) (map (fun p => (snd p, influence_map (fst p))) weights)).
+  transitivity (sum (fun n : R * map_rows => fst n * f (snd n)) (map (fun p => (snd p,
+    influence_map (fst p))) weights)).
   - now rewrite sum_map.
-  - rewrite (sum_permutation _ _ _ P), sum_app. assert (N : sum (fun n => fst n * f (snd n)) zeros = 0); [| rewrite N; ring].
+  - rewrite (sum_permutation _ _ _ P), sum_app.
+  assert (N : sum (fun n => fst n * f (snd n)) zeros = 0); [| rewrite N; ring].
     clear P. induction Z0 as [| n s E _ IH]; [reflexivity |]. rewrite sum_cons, IH, E. ring.
 Qed.
 
@@ -57,7 +59,8 @@ Definition computed_node (along : bool) (n : influence) : node :=
 Definition computed_nodes along (weights : list (influence * R)) : list (node * R) :=
   map (fun p => (computed_node along (fst p), snd p)) weights.
 
-Record bounded_vertex (most : R) (k : nat) (weights : list (influence * R)) (row : list (R * map_rows (num := R))) : Prop := {
+Record bounded_vertex (most : R) (k : nat) (weights : list (influence * R)) (row : list (R * map_rows (num := R))) :
+  Prop := {
   rest_inside : in_box (box_of_model b) (point_of x);
   rest_number : all_of number x;
   maps_numbers : Forall (fun p => map_number (influence_map (fst p))) weights;
@@ -139,7 +142,8 @@ Proof.
   intros A B V. destruct (row_facts _ _ _ _ V A B) as [F S]. pose proof (most_nonnegative _ _ _ _ V B) as P.
   destruct V as [RI RN _ _ _ _ RO RL (K1 & KO)].
   pose proof (vertex_error prec emin axis b x row _ A RI RN F S) as E.
-  pose proof (evaluation_error_covers prec emin k (length row) most ((1 + 7.02 * u) * most + 1.53 * eta) RL K1 KO P) as C.
+  pose proof (evaluation_error_covers prec emin k (length row) most ((1 + 7.02 * u) * most + 1.53 * eta) RL K1 KO P)
+    as C.
   assert (I : 0 <= (1 + 7.02 * u) * most + 1.53 * eta <= (1 + 7.02 * u) * most + 1.53 * eta).
   { split; [| apply Rle_refl]. pose proof (u_positive prec). pose proof (eta_positive emin).
     assert (0 <= (1 + 7.02 * u) * most) by (apply Rmult_le_pos; lra). lra. }

@@ -1,5 +1,6 @@
 (* SPDX-License-Identifier: GPL-3.0-or-later *)
-(* best_corner of toolkit/bounds/bound_box.cpp: the greatest of the n(n - 1) corners of section 5.2.2 with its error term
+(* best_corner of toolkit/bounds/bound_box.cpp: the greatest of the n(n - 1) corners of section 5.2.2 with its error
+  term
    is at least every mean of W'. With rounding and underflow; of numbers near overflow it is not true
    (README.md), so there is no theorem over IEEE values. *)
 From Coq Require Import Reals Lra Lia ZArith List Permutation.
@@ -76,7 +77,8 @@ Lemma best_ge base slack ps : forall r i others j, In (i, others) ps -> In j oth
                                      (snd p) best) ps r.
 Proof.
   assert (Up : forall qs r, r <= fold_left (fun best (p : entry * list entry) =>
-             fold_left (fun best j => max real_ops best (corner_value real_ops base slack (fst p) j)) (snd p) best) qs r).
+             fold_left (fun best j => max real_ops best (corner_value real_ops base slack (fst p) j)) (snd p) best)
+               qs r).
   { induction qs as [| q qs IH]; intros r; cbn [fold_left]; [lra |]. apply Rle_trans with (2 := IH _).
     apply (fold_max_ge (fun j => corner_value real_ops base slack (fst q) j)). }
   induction ps as [| p ps IH]; intros r i others j I J; [contradiction |]. cbn [fold_left]. destruct I as [-> | I].
@@ -104,7 +106,8 @@ Proof.
     assert (IZR (Z.abs k) <= IZR (2 ^ prec)).
     { rewrite Rabs_mult, (Rabs_pos_eq u) in B by (apply Rlt_le, u_positive). rewrite <- abs_IZR in B.
       rewrite IZR_power by lia. apply Rmult_le_reg_r with u; [apply u_positive |].
-      replace (bpow radix2 prec * u) with 1 by (unfold u, rounding.u; rewrite <- bpow_plus, Z.add_opp_diag_r; reflexivity).
+      replace (bpow radix2 prec * u) with 1 by (unfold u, rounding.u; rewrite <- bpow_plus, Z.add_opp_diag_r;
+        reflexivity).
       exact B. }
     apply le_IZR in H1. lia.
 Qed.
@@ -153,7 +156,8 @@ Proof.
     2: { apply (approximates_add prec emin); [exact A |].
          eapply (approximates_weaken prec emin); [| apply Rle_refl | exact T]. lia. }
     unfold lost. rewrite S_INR. simpl ((1 + u) ^ S n).
-    replace (/ 2 * (INR n + 1) * ((1 + u) * (1 + u) ^ n)) with ((1 + u) * (/ 2 * INR n * (1 + u) ^ n + / 2 * (1 + u) ^ n))
+    replace (/ 2 * (INR n + 1) * ((1 + u) * (1 + u) ^ n)) with ((1 + u) * (/ 2 * INR n * (1 + u) ^ n + / 2 * (1 + u)
+      ^ n))
       by ring.
     apply Rmult_le_compat_l; lra.
 Qed.
@@ -170,7 +174,8 @@ Proof.
   apply (base_from nodes G 1); [lia |].
   pose proof (approximates_mul prec emin 0 0 _ _ _ _ _ _ (approximates_exact prec emin _ FL)
                 (approximates_exact prec emin _ B)) as T.
-  rewrite (Rabs_pos_eq (entry_l m)) in T by lra. apply (approximates_weaken prec emin 1 1 _ _ _ (/ 2)); [lia | | exact T].
+  rewrite (Rabs_pos_eq (entry_l m)) in T by lra.
+  apply (approximates_weaken prec emin 1 1 _ _ _ (/ 2)); [lia | | exact T].
   unfold lost. pose proof (u_positive prec). simpl. lra.
 Qed.
 
@@ -183,7 +188,8 @@ Lemma corner_approximates nodes i j most : (2 <= length nodes)%nat -> Forall cor
   growth (length nodes + 2) * (3 * most) + lost (length nodes + 2) * eta.
 Proof.
   intros Len F SL Ii Ij M slack range. pose proof (u_positive prec) as U.
-  rewrite Forall_forall in F, M. destruct (F i Ii) as (Li & Hi & (Pi & Qi) & Oi & Bi). destruct (F j Ij) as (_ & _ & _ & _ & Bj).
+  rewrite Forall_forall in F, M. destruct (F i Ii) as (Li & Hi & (Pi & Qi) & Oi & Bi).
+  destruct (F j Ij) as (_ & _ & _ & _ & Bj).
   pose proof (M i Ii) as Mi. pose proof (M j Ij) as Mj. rewrite <- Forall_forall in F, M.
   assert (P : 0 <= sum entry_l nodes).
   { apply sum_nonnegative. apply Forall_impl with (2 := F). intros a (_ & _ & (Q & _) & _). exact Q. }
@@ -211,7 +217,8 @@ Proof.
   pose proof (eta_positive emin). pose proof (growth_nonnegative prec (S (S n))).
   assert (SM : sum (fun m0 => entry_l m0 * Rabs (entry_b m0)) (m :: nodes) <= sum entry_l (m :: nodes) * most).
   { rewrite (Rmult_comm (sum _ _)), <- sum_scale. apply sum_le. rewrite Forall_forall in F, M |- *. intros a Ia.
-    destruct (F a Ia) as (_ & _ & (Pa & _) & _). rewrite (Rmult_comm most). apply Rmult_le_compat_l; [exact Pa | now apply M]. }
+    destruct (F a Ia) as (_ & _ & (Pa & _) & _). rewrite (Rmult_comm most).
+    apply Rmult_le_compat_l; [exact Pa | now apply M]. }
   pose proof (Rabs_pos (entry_b i)) as Bi0.
   assert (RI : Rabs range * Rabs (entry_b i) <= range * most).
   { rewrite Rabs_pos_eq by (unfold range; lra). apply Rmult_le_compat_l; [unfold range; lra | exact Mi]. }
@@ -249,7 +256,8 @@ Proof.
   assert (N2 : 2 <= INR n) by (apply (le_INR 2); exact Len).
   rewrite plus_INR in Sm. replace (INR 8) with 8 in Sm by (simpl; ring).
   assert (Big : (8 * Z.of_nat n + 64 < 2 ^ prec)%Z).
-  { pose proof (@prec_large prec emin format). apply lt_IZR. rewrite IZR_power, plus_IZR, mult_IZR, <- INR_IZR_INZ by lia.
+  { pose proof (@prec_large prec emin format). apply lt_IZR.
+  rewrite IZR_power, plus_IZR, mult_IZR, <- INR_IZR_INZ by lia.
     assert (HU : u * bpow radix2 prec = 1)
       by (unfold u, rounding.u; rewrite <- bpow_plus, Z.add_opp_diag_l; reflexivity).
     pose proof (bpow_gt_0 radix2 prec).
@@ -258,7 +266,8 @@ Proof.
   (* the computed term *)
   assert (ZN : IZR (length_of nodes) = INR n) by (unfold length_of, n; now rewrite <- INR_IZR_INZ).
   assert (T : corner_error real_ops nodes =
-              successor.succ prec emin (fl (fl (fl (IZR (4 * (Z.of_nat n + 8)) * u) * B) + IZR (2 * Z.of_nat n) * eta))).
+              successor.succ prec emin (fl (fl (fl (IZR (4 * (Z.of_nat n + 8)) * u) * B) + IZR (2 * Z.of_nat n) *
+                eta))).
   { unfold corner_error. rewrite (model_succ prec emin), model_u. fold B. rewrite model_smallest, Rmult_1_l.
     cbn [add mul constant real_model.real_ops]. simpl (bpow radix2 0). rewrite !Rmult_1_r. unfold length_of. fold n.
     assert (I : forall k, (Z.abs k < 2 ^ prec)%Z -> fl (IZR k) = IZR k)
@@ -316,7 +325,8 @@ Proof.
     assert (Len : (2 <= length all)%nat) by (unfold all; simpl; lia).
     pose proof (corner_approximates all i j _ Len F SL Ii Ij (magnitude_ge all)) as A. cbv zeta in A.
     pose proof (corner_error_covers all Len Sm) as C.
-    pose proof (best_ge (corner_base real_ops all) (corner_slack real_ops all) (picks [] all) (lowest real_ops) i others j
+    pose proof (best_ge (corner_base real_ops all) (corner_slack real_ops all) (picks [] all) (lowest real_ops) i
+      others j
                   Io Jo) as B. fold (best_of_corners real_ops all) in B.
     assert (M : mean weights <= sum (fun m => entry_l m * entry_b m) all + (entry_h i - entry_l i) * entry_b i +
                                 (1 - sum entry_l all - (entry_h i - entry_l i)) * entry_b j).

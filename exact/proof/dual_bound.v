@@ -1,6 +1,7 @@
 (* SPDX-License-Identifier: GPL-3.0-or-later *)
 (* dual_bound of toolkit/bounds/weight_space.cpp: what it computes is at least the exact D(lambda) of the numbers given.
-   Every rounding is bounded by u times its computed result, so that no gamma_k and no small number of terms is needed. *)
+   Every rounding is bounded by u times its computed result,
+     so that no gamma_k and no small number of terms is needed. *)
 From Coq Require Import Reals Lra Lia ZArith List.
 From Flocq Require Import Core.
 From CinchProof Require Import duality rounding successor model real_model.
@@ -29,7 +30,8 @@ Proof.
 Qed.
 
 (* fl(b - lambda) has the sign of b - lambda. *)
-Lemma same_sign lambda b : number lambda -> number b -> Rle_bool 0 (fl (b - lambda)) = (if Rle_dec lambda b then true else false).
+Lemma same_sign lambda b : number lambda -> number b -> Rle_bool 0 (fl (b - lambda)) = (if Rle_dec lambda b then true
+  else false).
 Proof.
   intros L B. destruct (Rle_dec lambda b) as [G | N].
   - apply Rle_bool_true. apply (fl_nonnegative prec emin). lra.
@@ -178,7 +180,8 @@ Theorem dual_bound_at_least_exact lambda nodes :
 Proof.
   intros L F S.
   destruct nodes as [| first others].
-  { unfold dual, dual_value, dual_sums. rewrite model_zero. cbn [fold_left map]. rewrite !(model_succ prec emin). unfold sum.
+  { unfold dual, dual_value, dual_sums. rewrite model_zero. cbn [fold_left map]. rewrite !(model_succ prec emin).
+  unfold sum.
     cbn [fold_right]. rewrite Rplus_0_r. cbn [add real_model.real_ops].
     assert (E : 0 <= sum_error real_ops (length_of (@nil (entry (num := R)))) 0).
     { change (length_of []) with 0%Z. rewrite (model_sum_error prec emin 0 0);

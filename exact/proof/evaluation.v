@@ -115,7 +115,8 @@ Proof.
 Qed.
 
 (* A vertex in the box has no leaves beyond M. *)
-Lemma row_along_below axis b x m : in_box (box_of_model b) (point_of x) -> row_along axis x m <= exact_magnitude axis b m.
+Lemma row_along_below axis b x m : in_box (box_of_model b) (point_of x) -> row_along axis x m <= exact_magnitude axis
+  b m.
 Proof.
   intros (X0 & X1 & X2). simpl in *. apply in_box_outermost in X0, X1, X2.
   unfold row_along, exact_magnitude, size_row, sum3, column_sizes, outermost_of, absolutes, size_along. simpl.
@@ -123,11 +124,16 @@ Proof.
   set (o1 := Rabs (at1 (model.centre b)) + at1 (model.half b)) in *.
   set (o2 := Rabs (at2 (model.centre b)) + at2 (model.half b)) in *.
   assert (P : forall a c y o, Rabs y <= o -> Rabs a * (Rabs c * Rabs y) <= Rabs a * (Rabs c * o)).
-  { intros a c y o L. apply Rmult_le_compat_l; [apply Rabs_pos |]. apply Rmult_le_compat_l; [apply Rabs_pos | exact L]. }
-  pose proof (P (IZR (at0 axis)) (at0 (column (at0 m))) _ _ X0). pose proof (P (IZR (at0 axis)) (at1 (column (at0 m))) _ _ X1).
-  pose proof (P (IZR (at0 axis)) (at2 (column (at0 m))) _ _ X2). pose proof (P (IZR (at1 axis)) (at0 (column (at1 m))) _ _ X0).
-  pose proof (P (IZR (at1 axis)) (at1 (column (at1 m))) _ _ X1). pose proof (P (IZR (at1 axis)) (at2 (column (at1 m))) _ _ X2).
-  pose proof (P (IZR (at2 axis)) (at0 (column (at2 m))) _ _ X0). pose proof (P (IZR (at2 axis)) (at1 (column (at2 m))) _ _ X1).
+  { intros a c y o L. apply Rmult_le_compat_l; [apply Rabs_pos |].
+  apply Rmult_le_compat_l; [apply Rabs_pos | exact L]. }
+  pose proof (P (IZR (at0 axis)) (at0 (column (at0 m))) _ _ X0).
+  pose proof (P (IZR (at0 axis)) (at1 (column (at0 m))) _ _ X1).
+  pose proof (P (IZR (at0 axis)) (at2 (column (at0 m))) _ _ X2).
+  pose proof (P (IZR (at1 axis)) (at0 (column (at1 m))) _ _ X0).
+  pose proof (P (IZR (at1 axis)) (at1 (column (at1 m))) _ _ X1).
+  pose proof (P (IZR (at1 axis)) (at2 (column (at1 m))) _ _ X2).
+  pose proof (P (IZR (at2 axis)) (at0 (column (at2 m))) _ _ X0).
+  pose proof (P (IZR (at2 axis)) (at1 (column (at2 m))) _ _ X1).
   pose proof (P (IZR (at2 axis)) (at2 (column (at2 m))) _ _ X2). lra.
 Qed.
 
@@ -163,7 +169,8 @@ Proof.
     Rabs (evaluate_coordinate real_ops x (rows_of f nodes) - exact_coordinate x (rows_of f nodes)) <=
     growth (4 + length nodes) * size_coordinate x (rows_of f nodes) + underflow (length nodes) * eta).
   { intros f N. assert (G : Forall (fun n => is_weight (fst n) /\ row_number (snd n)) (rows_of f nodes)).
-    { unfold rows_of. apply Forall_map. apply Forall_impl with (2 := F). intros n (W & M & _). split; [exact W | now apply N]. }
+    { unfold rows_of. apply Forall_map. apply Forall_impl with (2 := F). intros n (W & M & _).
+    split; [exact W | now apply N]. }
     destruct (coordinate_approximates x (rows_of f nodes) X G) as (_ & _ & E).
     unfold rows_of in E at 3 5. rewrite !map_length in E. exact E. }
   pose proof (C at0 (fun m M => proj1 M)) as C0. pose proof (C at1 (fun m M => proj1 (proj2 M))) as C1.
@@ -243,7 +250,8 @@ Proof.
   assert (ZK : IZR (Z.of_nat k + 8) = INR k + 8) by (rewrite plus_IZR, <- INR_IZR_INZ; reflexivity).
   assert (Big : (Z.of_nat k + 8 < 2 ^ prec)%Z).
   { pose proof (@prec_large prec emin format). apply lt_IZR. rewrite IZR_power, ZK by lia.
-    assert (HU : u * bpow radix2 prec = 1) by (unfold u, rounding.u; rewrite <- bpow_plus, Z.add_opp_diag_l; reflexivity).
+    assert (HU : u * bpow radix2 prec = 1) by (unfold u, rounding.u; rewrite <- bpow_plus, Z.add_opp_diag_l;
+      reflexivity).
     pose proof (bpow_gt_0 radix2 prec).
     assert (q * bpow radix2 prec <= / 4096 * bpow radix2 prec) by (apply Rmult_le_compat_r; lra).
     unfold q in H2. rewrite Rmult_assoc, HU in H2. lra. }

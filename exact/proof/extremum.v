@@ -209,15 +209,18 @@ Proof.
   { intros e Fe Pe. pose proof (approximates_exact prec emin e Fe) as X. now rewrite Rabs_pos_eq in X. }
   eapply (approximates_weaken prec emin);
     [| | apply (dot3_approximates 2 0) with (h := absolutes (projected axis m)) (G := column_sizes axis m)
-           (y := model.half b) (Y := model.half b)]; try (apply approximates_abs; assumption); try (apply H; assumption).
+           (y := model.half b) (Y := model.half b)]; try (apply approximates_abs; assumption); try (apply H;
+             assumption).
   - lia.
   - lra.
 Qed.
 
 Theorem extremum_approximates along axis b m : is_axis axis -> box_number b -> map_number m ->
-  approximates 7 (extremum_of real_ops along axis b m) (exact_extremum along axis b m) (exact_magnitude axis b m) (3.05).
+  approximates 7 (extremum_of real_ops along axis b m) (exact_extremum along axis b m) (exact_magnitude axis b m)
+    (3.05).
 Proof.
-  intros A B F. pose proof (middle_approximates axis b m A B F) as P. pose proof (radius_approximates axis b m A B F) as R.
+  intros A B F. pose proof (middle_approximates axis b m A B F) as P.
+  pose proof (radius_approximates axis b m A B F) as R.
   pose proof (u_positive prec). pose proof (u_small prec emin).
   assert (X : exact_magnitude axis b m =
               sum3 (column_sizes axis m) (model.half b) +
@@ -230,9 +233,12 @@ Proof.
     assert (S : forall g x, g = side along * x -> Rabs g = Rabs x).
     { intros g x ->. rewrite Rabs_mult. destruct along; simpl; [rewrite Rabs_R1 | rewrite Rabs_left by lra]; ring. }
     set (q := pull (affine_of m) (direction along axis)).
-    assert (Q0 : px q = side along * along_axis axis (column0 m)) by (unfold q, along_axis, pull, direction; simpl; ring).
-    assert (Q1 : py q = side along * along_axis axis (column1 m)) by (unfold q, along_axis, pull, direction; simpl; ring).
-    assert (Q2 : pz q = side along * along_axis axis (column2 m)) by (unfold q, along_axis, pull, direction; simpl; ring).
+    assert (Q0 : px q = side along * along_axis axis (column0 m)) by (unfold q, along_axis, pull, direction; simpl;
+      ring).
+    assert (Q1 : py q = side along * along_axis axis (column1 m)) by (unfold q, along_axis, pull, direction; simpl;
+      ring).
+    assert (Q2 : pz q = side along * along_axis axis (column2 m)) by (unfold q, along_axis, pull, direction; simpl;
+      ring).
     assert (T : dot (direction along axis) (translation (affine_of m)) = side along * along_axis axis (column3 m))
       by (unfold dot, along_axis, direction; simpl; ring).
     rewrite T, (S _ _ Q0), (S _ _ Q1), (S _ _ Q2). unfold dot. rewrite Q0, Q1, Q2.
@@ -258,7 +264,8 @@ Theorem magnitude_approximates_exact axis b m : is_axis axis -> box_number b -> 
 Proof.
   intros A ((C0 & C1 & C2) & (E0 & E1 & E2) & (Q0 & Q1 & Q2)) F. apply columns_number in F.
   destruct F as (F0 & F1 & F2 & F3). pose proof (u_positive prec). pose proof (u_small prec emin).
-  assert (Out : forall c e, number c -> number e -> 0 <= e -> approximates 1 (fl (Rabs c + e)) (Rabs c + e) (Rabs c + e) 0).
+  assert (Out : forall c e, number c -> number e -> 0 <= e -> approximates 1 (fl (Rabs c + e)) (Rabs c + e) (Rabs c +
+    e) 0).
   { intros c e Fc Fe Pe. replace 0 with ((1 + u) * (0 + 0)) by ring. apply (approximates_add prec emin).
     - rewrite <- (Rabs_Rabsolu c) at 3. apply (approximates_exact prec emin). now apply (number_abs prec emin).
     - pose proof (approximates_exact prec emin e Fe) as X. now rewrite Rabs_pos_eq in X. }

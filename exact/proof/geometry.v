@@ -74,7 +74,8 @@ Theorem apply_combine m s :
 Proof.
   intros S.
   assert (H : forall r,
-    combine (map (fun p => (fst p, apply m (snd p))) r) = shift (turn m (combine r)) (scale (sum fst r) (translation m))).
+    combine (map (fun p => (fst p, apply m (snd p))) r) = shift (turn m (combine r)) (scale (sum fst r) (translation
+      m))).
   { induction r as [| [u p] r IH]; simpl.
     - unfold shift, turn, scale, sum, dot; simpl; f_equal; ring.
     - rewrite IH, sum_cons. unfold shift, turn, scale, apply, dot; simpl; f_equal; ring. }

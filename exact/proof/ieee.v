@@ -110,7 +110,8 @@ Lemma constant_value m e : (Z.abs m < 2 ^ prec)%Z -> (emin <= e <= 0)%Z ->
   finite (constant o m e) /\ val (constant o m e) = IZR m * bpow radix2 e.
 Proof. intros M E. apply val_is. now apply (law_constant _ _ I). Qed.
 
-Lemma exponents : (emin <= 0)%Z /\ (emin <= - prec)%Z /\ (emin <= 1 - 2 * prec)%Z /\ (1 - 2 * prec <= 0)%Z /\ (24 <= prec)%Z.
+Lemma exponents : (emin <= 0)%Z /\ (emin <= - prec)%Z /\ (emin <= 1 - 2 * prec)%Z /\ (1 - 2 * prec <= 0)%Z /\
+  (24 <= prec)%Z.
 Proof. pose proof (@prec_large prec emin format). pose proof (@emin_small prec emin format). lia. Qed.
 
 Lemma two_power_large : (2 ^ 24 <= 2 ^ prec)%Z.
@@ -119,7 +120,8 @@ Proof. apply Z.pow_le_mono_r; [lia | exact (@prec_large prec emin format)]. Qed.
 Lemma zero_value : finite (zero o) /\ val (zero o) = 0.
 Proof.
   unfold zero. destruct exponents as (E & _). pose proof two_power_large.
-  destruct (constant_value 0 0) as [F V]; [change (Z.abs 0) with 0%Z; lia | lia |]. split; [exact F |]. rewrite V. simpl. ring.
+  destruct (constant_value 0 0) as [F V]; [change (Z.abs 0) with 0%Z; lia | lia |]. split; [exact F |]. rewrite V.
+  simpl. ring.
 Qed.
 
 Lemma smallest_value n : (Z.abs n < 2 ^ prec)%Z ->
@@ -131,7 +133,8 @@ Qed.
 
 Lemma unit_value : finite (unit_roundoff o) /\ val (unit_roundoff o) = unit_roundoff real_ops.
 Proof.
-  unfold unit_roundoff. rewrite (law_precision _ _ I). destruct exponents as (E & F & G & H & P). pose proof two_power_large.
+  unfold unit_roundoff. rewrite (law_precision _ _ I). destruct exponents as (E & F & G & H & P).
+  pose proof two_power_large.
   apply constant_value; lia.
 Qed.
 

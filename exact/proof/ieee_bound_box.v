@@ -1,5 +1,6 @@
 (* SPDX-License-Identifier: GPL-3.0-or-later *)
-(* bound_box of toolkit/bounds/bound_box.cpp over IEEE values: a finite support is at least every vertex of the BV, exact
+(* bound_box of toolkit/bounds/bound_box.cpp over IEEE values: a finite support is at least every vertex of the BV,
+  exact
    and as evaluate_vertex computes it, along every axis and against it, for convex, eq12 and limited. (For corners it is
    not true of numbers near overflow; README.md.) *)
 From Coq Require Import Reals Lra Lia ZArith List Bool Permutation.
@@ -70,7 +71,8 @@ Proof.
     - destruct (max_finite prec emin I s _ Fs Fm) as [FM V]. destruct (IH _ FM) as (Fr & L & R). rewrite V in L.
       pose proof (Rmax_l (val s) (val (extremum_magnitude o axis b m))).
       pose proof (Rmax_r (val s) (val (extremum_magnitude o axis b m))).
-      split; [exact Fr |]. split; [cbv zeta in *; lra |]. constructor; [split; [exact Fm | cbv zeta in *; lra] | exact R]. }
+      split; [exact Fr |]. split; [cbv zeta in *; lra |].
+      constructor; [split; [exact Fm | cbv zeta in *; lra] | exact R]. }
   apply (H (zero o)). apply (zero_value prec emin I).
 Qed.
 
@@ -144,7 +146,8 @@ Lemma coordinate_backward x nodes : finite (evaluate_coordinate o x nodes) ->
     (map (fun n => (val (fst n), row_value (view := view) (snd n))) nodes).
 Proof.
   unfold evaluate_coordinate.
-  assert (H : forall s, finite (fold_left (fun sum n => add o sum (mul o (fst n) (evaluate_row o x (snd n)))) nodes s) ->
+  assert (H : forall s, finite (fold_left (fun sum n => add o sum (mul o (fst n) (evaluate_row o x (snd n)))) nodes
+    s) ->
     finite s /\ val (fold_left (fun sum n => add o sum (mul o (fst n) (evaluate_row o x (snd n)))) nodes s) =
     fold_left (fun sum n => add real_ops sum (mul real_ops (fst n) (evaluate_row real_ops (triple_value x) (snd n))))
       (map (fun n => (val (fst n), row_value (view := view) (snd n))) nodes) (val s)).
@@ -219,7 +222,8 @@ Proof.
   set (extremum_at := fun n => extremum_of o along axis b (influence_map n)) in *.
   set (bound := box_free_bound o how nodes (map extremum_at nodes)) in *.
   set (error := model.succ o (add o (extremum_error o most) (evaluation_error o (Z.of_nat k) most))) in *.
-  destruct (less o (model.succ o (add o bound error)) (infinity o)); [| now apply (infinity_not_finite prec emin I) in F].
+  destruct (less o (model.succ o (add o bound error)) (infinity o));
+    [| now apply (infinity_not_finite prec emin I) in F].
   unfold error in *. clear error.
   apply (succ_backward prec emin I) in F. destruct F as (F & ->).
   apply (add_backward prec emin I) in F. destruct F as (FB & F & ->).
@@ -236,7 +240,8 @@ Proof.
   destruct (methods_sound nodes extremum_at how How N E Ne FB) as (FE & SB). fold bound in SB.
   assert (BN : box_number prec emin (box_value b)).
   { destruct B as (_ & _ & P). split; [| split]; [| | exact P]; repeat split; apply (val_number prec emin I). }
-  assert (MN : forall m, map_number prec emin (map_value m)) by (intros m; repeat split; apply (val_number prec emin I)).
+  assert (MN : forall m, map_number prec emin (map_value m)) by (intros m; repeat split;
+    apply (val_number prec emin I)).
   assert (BV : bounded_vertex prec emin axis (box_value b) (triple_value x) (val most) k (weight_values weights)
                  (row_values row)).
   { constructor.

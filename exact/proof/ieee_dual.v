@@ -85,13 +85,15 @@ Lemma sums_backward lambda nodes : forall s A,
   (val (fst r), val (snd r)) = fold_left (dual_step real_ops (val lambda)) (map entry_value nodes) (val s, val A).
 Proof.
   induction nodes as [| e nodes IH]; intros s A F G; cbn [fold_left] in *.
-  - cbn [fst snd] in *. split; [exact F |]. split; [exact G |]. split; [congruence |]. split; [constructor | reflexivity].
+  - cbn [fst snd] in *. split; [exact F |]. split; [exact G |]. split; [congruence |].
+  split; [constructor | reflexivity].
   - unfold dual_step at 2 in F. unfold dual_step at 2 in G. cbn [fst snd] in F, G.
     destruct (IH _ _ F G) as (S & B & _ & Fb & V).
     apply (add_backward prec emin I) in S, B. destruct S as (S & P & VS). destruct B as (B & Q & VB).
     apply (absolute_backward prec emin I) in Q. destruct Q as (_ & VQ).
     destruct (product_backward lambda e P) as (L & Be & VP).
-    split; [exact S |]. split; [exact B |]. split; [trivial |]. split; [now constructor |]. cbn [map fold_left]. unfold dual_step at 2.
+    split; [exact S |]. split; [exact B |]. split; [trivial |]. split; [now constructor |]. cbn [map fold_left].
+    unfold dual_step at 2.
     cbv zeta in V |- *. unfold dual_step at 3. cbn [fst snd]. rewrite V, VS, VB, VQ, VP. reflexivity.
 Qed.
 

@@ -58,7 +58,8 @@ Lemma magnitude_backward axis x : finite (project_magnitude o axis x) ->
   val (project_magnitude o axis x) = project_magnitude real_ops axis (triple_value x).
 Proof.
   intros F. unfold project_magnitude in *. apply magnitude_step_backward in F. destruct F as (F & ->).
-  apply magnitude_step_backward in F. destruct F as (F & ->). apply magnitude_step_backward in F. destruct F as (_ & ->).
+  apply magnitude_step_backward in F. destruct F as (F & ->). apply magnitude_step_backward in F.
+  destruct F as (_ & ->).
   rewrite (proj2 (zero_value prec emin I)), model_zero. reflexivity.
 Qed.
 
@@ -86,7 +87,8 @@ Proof.
   intros (F0 & F1 & F2). cbn [outermost at0 at1 at2] in *.
   apply (add_backward prec emin I) in F0, F1, F2. destruct F0 as (A0 & _ & V0). destruct F1 as (A1 & _ & V1).
   destruct F2 as (A2 & _ & V2). apply (absolute_backward prec emin I) in A0, A1, A2.
-  unfold triple_value, outermost. cbn [at0 at1 at2]. rewrite V0, V1, V2, (proj2 A0), (proj2 A1), (proj2 A2). reflexivity.
+  unfold triple_value, outermost. cbn [at0 at1 at2]. rewrite V0, V1, V2, (proj2 A0), (proj2 A1), (proj2 A2).
+  reflexivity.
 Qed.
 
 Lemma middle_backward axis b m : is_axis axis -> finite (extremum_middle o axis b m) ->

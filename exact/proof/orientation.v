@@ -1,5 +1,6 @@
 (* SPDX-License-Identifier: GPL-3.0-or-later *)
-(* The filters of toolkit/collide/orientation.cpp: where they decide, they decide as the exact determinant does. Rounding
+(* The filters of toolkit/collide/orientation.cpp: where they decide, they decide as the exact determinant does.
+Rounding
    and underflow are here; that nothing overflows is the range of the greatest differences. *)
 From Coq Require Import Reals Lra Lia ZArith List Bool.
 From Flocq Require Import Core.
@@ -31,7 +32,8 @@ Proof.
   assert (UM : u * Rabs (fl (x - y)) <= u * m) by (apply Rmult_le_compat_l; lra).
   split; [apply (fl_number prec emin) |]. split.
   - replace (x - y) with (fl (x - y) - (fl (x - y) - (x - y))) by ring.
-    pose proof (Rabs_triang (fl (x - y)) (- (fl (x - y) - (x - y)))) as T. rewrite Rabs_Ropp in T. unfold Rminus at 1. lra.
+    pose proof (Rabs_triang (fl (x - y)) (- (fl (x - y) - (x - y)))) as T. rewrite Rabs_Ropp in T.
+    unfold Rminus at 1. lra.
   - replace (growth 1) with u by (unfold growth; simpl; ring).
     assert (0 <= u * (u * m)) by (apply Rmult_le_pos; [lra |]; apply Rmult_le_pos; lra). lra.
 Qed.
@@ -122,7 +124,8 @@ Proof.
   { replace ((1 + u) ^ 3) with (1 + 3 * u + 3 * (u * u) + u * (u * u)) by ring.
     assert (u * (u * u) <= 1 * (u * u)) by (apply Rmult_le_compat_r; [apply Rmult_le_pos |]; lra). lra. }
   assert (G8 : growth 8 <= 8.00001 * u).
-  { pose proof (growth_small prec 8) as G. replace (INR 8) with 8 in G by (simpl; ring). specialize (G ltac:(lra)). lra. }
+  { pose proof (growth_small prec 8) as G. replace (INR 8) with 8 in G by (simpl; ring). specialize (G ltac:(lra)).
+  lra. }
   apply Rplus_le_compat.
   - rewrite <- Rmult_assoc. apply Rmult_le_compat_r; [exact MP |].
     pose proof (growth_nonnegative prec 8). pose proof (power_at_least_1 prec 3).
@@ -154,7 +157,8 @@ Proof.
   replace (2 * ((1 + u) * m0 * ((1 + u) * m1))) with (2 * (1 + u) ^ 2 * M) by (unfold M; ring).
   assert (U2 : u * u <= / 16777216 * u) by (apply Rmult_le_compat_r; lra).
   assert (G4 : growth 4 <= 4.00001 * u).
-  { pose proof (growth_small prec 4) as G. replace (INR 4) with 4 in G by (simpl; ring). specialize (G ltac:(lra)). lra. }
+  { pose proof (growth_small prec 4) as G. replace (INR 4) with 4 in G by (simpl; ring). specialize (G ltac:(lra)).
+  lra. }
   apply Rplus_le_compat; [| apply Rmult_le_compat_r; lra].
   rewrite <- Rmult_assoc. apply Rmult_le_compat_r; [exact MP |].
   pose proof (growth_nonnegative prec 4). pose proof (power_at_least_1 prec 2).
@@ -234,7 +238,8 @@ Proof.
   assert (U6 : 0 <= u * u * u * M) by (repeat apply Rmult_le_pos; lra).
   assert (V1 : 0 <= u * (eta * (m1 * m2))) by (repeat apply Rmult_le_pos; lra).
   assert (V2 : 0 <= u * (eta * m2)) by (repeat apply Rmult_le_pos; lra).
-  assert (V3 : u * (eta * (m1 * m2)) <= 1 * (eta * (m1 * m2))) by (apply Rmult_le_compat_r; [repeat apply Rmult_le_pos |]; lra).
+  assert (V3 : u * (eta * (m1 * m2)) <= 1 * (eta * (m1 * m2))) by (apply Rmult_le_compat_r;
+    [repeat apply Rmult_le_pos |]; lra).
   assert (V4 : 0 <= u * u * (eta * (m1 * m2))) by (repeat apply Rmult_le_pos; lra).
   assert (V5 : u * u * (eta * (m1 * m2)) <= u * 1 * (eta * (m1 * m2)))
     by (apply Rmult_le_compat_r; [repeat apply Rmult_le_pos; lra |]; apply Rmult_le_compat_l; lra).
@@ -297,12 +302,16 @@ Proof.
   - apply orb_prop in Small.
     assert (H : g0 <= 0 \/ g1 <= 0 \/ g2 <= 0).
     { destruct Small as [S | S]; [left; revert S; case Rle_bool_spec; [trivial | discriminate] |].
-      apply orb_prop in S. right. destruct S as [S | S]; [left | right]; revert S; case Rle_bool_spec; trivial; discriminate. }
+      apply orb_prop in S. right. destruct S as [S | S]; [left | right]; revert S; case Rle_bool_spec; trivial;
+        discriminate. }
     unfold sign_is, exact3, x, y, z, exact_difference. cbn [at0 at1 at2].
     destruct H as [H | [H | H]].
-    + rewrite (difference_zero _ _ g0 B0 A0 P0 H), (difference_zero _ _ g0 C0 A0 Q0 H), (difference_zero _ _ g0 D0 A0 R0 H). ring.
-    + rewrite (difference_zero _ _ g1 B1 A1 P1 H), (difference_zero _ _ g1 C1 A1 Q1 H), (difference_zero _ _ g1 D1 A1 R1 H). ring.
-    + rewrite (difference_zero _ _ g2 B2 A2 P2 H), (difference_zero _ _ g2 C2 A2 Q2 H), (difference_zero _ _ g2 D2 A2 R2 H). ring.
+    + rewrite (difference_zero _ _ g0 B0 A0 P0 H), (difference_zero _ _ g0 C0 A0 Q0 H),
+      (difference_zero _ _ g0 D0 A0 R0 H). ring.
+    + rewrite (difference_zero _ _ g1 B1 A1 P1 H), (difference_zero _ _ g1 C1 A1 Q1 H),
+      (difference_zero _ _ g1 D1 A1 R1 H). ring.
+    + rewrite (difference_zero _ _ g2 B2 A2 P2 H), (difference_zero _ _ g2 C2 A2 Q2 H),
+      (difference_zero _ _ g2 D2 A2 R2 H). ring.
   - destruct (_ && _) eqn:In; [| exact Logic.I].
     apply andb_prop in In. destruct In as [I0 In]. apply andb_prop in In. destruct In as [I1 I2].
     apply andb_prop in I0, I1, I2. destruct I0 as [I0 _]. destruct I1 as [I1 _]. destruct I2 as [I2 _].

@@ -32,7 +32,8 @@ Proof.
   set (c1 := 9 * u * m0 * (1 - u) - eta / 2) in *.
   assert (C1 : 0 <= c1).
   { assert (Q : eta <= / 64 * u * m0).
-    { apply Rmult_le_reg_r with m1; [lra |]. replace (/ 64 * u * m0 * m1) with (/ 64 * u * M) by (unfold M; ring). exact E4. }
+    { apply Rmult_le_reg_r with m1; [lra |]. replace (/ 64 * u * m0 * m1) with (/ 64 * u * M) by (unfold M; ring).
+    exact E4. }
     assert (0 <= u * m0) by (apply Rmult_le_pos; lra).
     assert (u * m0 * u <= u * m0 * / 16777216) by (apply Rmult_le_compat_l; lra). unfold c1. lra. }
   pose proof (product_at_least prec emin _ m1 c1 ltac:(lra) C1 B1) as B2. apply Rle_trans with (2 := B2). unfold c1.
@@ -65,7 +66,8 @@ Proof.
     + rewrite (difference_zero prec emin _ _ g0 B0 A0 P0 H), (difference_zero prec emin _ _ g0 C0 A0 Q0 H). ring.
     + rewrite (difference_zero prec emin _ _ g1 B1 A1 P1 H), (difference_zero prec emin _ _ g1 C1 A1 Q1 H). ring.
   - destruct (_ && _) eqn:In; [| exact Logic.I].
-    apply andb_prop in In. destruct In as [I0 I1]. apply andb_prop in I0, I1. destruct I0 as [I0 _]. destruct I1 as [I1 _].
+    apply andb_prop in In. destruct In as [I0 I1]. apply andb_prop in I0, I1. destruct I0 as [I0 _].
+    destruct I1 as [I1 _].
     cbn [constant real_model.real_ops] in I0, I1. rewrite Rmult_1_l in I0, I1.
     assert (L0 : bpow radix2 (- range) <= g0) by (revert I0; case Rle_bool_spec; [trivial | discriminate]).
     assert (L1 : bpow radix2 (- range) <= g1) by (revert I1; case Rle_bool_spec; [trivial | discriminate]).
@@ -73,7 +75,8 @@ Proof.
     pose proof (determinant2_error prec emin p0 p1 q0 q1 (b0 - a0) (b1 - a1) (c0 - a0) (c1 - a1) g0 g1
                   ltac:(lra) ltac:(lra)
                   (difference_approximates prec emin _ _ _ B0 A0 P0) (difference_approximates prec emin _ _ _ B1 A1 P1)
-                  (difference_approximates prec emin _ _ _ C0 A0 Q0) (difference_approximates prec emin _ _ _ C1 A1 Q1)) as E.
+                  (difference_approximates prec emin _ _ _ C0 A0 Q0) (difference_approximates prec emin _ _ _ C1 A1
+                    Q1)) as E.
     destruct (error2_at_least range g0 g1 R L0 L1) as [F E1].
     cbn [constant mul less sub precision real_model.real_ops]. fold u.
     replace (IZR 9 * bpow radix2 (- prec)) with (9 * u) by reflexivity.

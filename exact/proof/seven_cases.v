@@ -31,12 +31,14 @@ Let b4 := extremum n4.
 Lemma mean_of_scheme w1 w2 w3 w4 :
   mean (scheme w1 w2 w3 w4) = w1 * b1 + w2 * b2 + w3 * b3 + w4 * b4 + sum (fun n => low n * extremum n) others.
 Proof.
-  unfold mean, scheme. rewrite !sum_cons. unfold lowest. rewrite sum_map. cbv beta. unfold b1, b2, b3, b4, fst, snd. ring.
+  unfold mean, scheme. rewrite !sum_cons. unfold lowest. rewrite sum_map. cbv beta. unfold b1, b2, b3, b4, fst, snd.
+  ring.
 Qed.
 
 Lemma sum_of_scheme w1 w2 w3 w4 : sum snd (scheme w1 w2 w3 w4) = w1 + w2 + w3 + w4 + sum low others.
 Proof.
-  unfold scheme. rewrite !sum_cons. unfold lowest. rewrite sum_map. change (fun a => snd (a, low a)) with low. simpl. ring.
+  unfold scheme. rewrite !sum_cons. unfold lowest. rewrite sum_map. change (fun a => snd (a, low a)) with low. simpl.
+  ring.
 Qed.
 
 (* Every scheme sums to 1. *)

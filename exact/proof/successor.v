@@ -1,5 +1,6 @@
 (* SPDX-License-Identifier: GPL-3.0-or-later *)
-(* succ of toolkit/bounds/rounding.hpp: fl(x + fl(fl(phi |x|) + eta)), phi = u (1 + 2u), is at least the next number above
+(* succ of toolkit/bounds/rounding.hpp: fl(x + fl(fl(phi |x|) + eta)), phi = u (1 + 2u),
+  is at least the next number above
    x [Rump, Zimmermann, Boldo, Melquiond 2009]; so that z <= succ(fl z) for every real z. *)
 From Coq Require Import Reals Lra Lia ZArith.
 From Flocq Require Import Core.
@@ -48,7 +49,8 @@ Proof.
   pose proof (u_positive prec) as U. pose proof (eta_positive emin) as E0.
   assert (PA : 0 <= phi * Rabs x) by (apply Rmult_le_pos; [unfold phi; nra | apply Rabs_pos]).
   pose proof (fl_nonnegative prec emin _ PA) as PF.
-  assert (E : eta <= fl (fl (phi * Rabs x) + eta)) by (apply (fl_above prec emin); [lra | now apply (eta_number prec emin)]).
+  assert (E : eta <= fl (fl (phi * Rabs x) + eta)) by (apply (fl_above prec emin);
+    [lra | now apply (eta_number prec emin)]).
   destruct (Rlt_or_le (Rabs x) (bpow radix2 (emin + prec))) as [S | L].
   { assert (HU : ulp radix2 fexp x = eta) by (apply ulp_FLT_small; [typeclasses eauto | exact S]).
     rewrite HU. lra. }
@@ -73,7 +75,8 @@ Proof.
     { apply (fl_above prec emin); [nra |]. apply (power_number prec emin); lia. }
     assert (B : number (q + eta)).
     { replace (q + eta) with (IZR (2 ^ (e - 1 - prec - emin) + 1) * bpow radix2 emin).
-      - apply (scaled_number prec emin); [| lia]. rewrite Z.abs_eq by (pose proof (Z.pow_nonneg 2 (e - 1 - prec - emin)); lia).
+      - apply (scaled_number prec emin); [| lia].
+      rewrite Z.abs_eq by (pose proof (Z.pow_nonneg 2 (e - 1 - prec - emin)); lia).
         apply Z.le_lt_trans with (2 ^ (prec - 2) + 1)%Z.
         + apply Zplus_le_compat_r. apply Z.pow_le_mono_r; lia.
         + replace prec with (prec - 2 + 2)%Z at 2 by lia. rewrite Z.pow_add_r by lia.

@@ -32,8 +32,14 @@ double number(Kind kind)
     if (below(16) == 0)
         kind = static_cast<Kind>(below(kinds));
     if (below(64) == 0) {
-        const double special[] = {0.0, -0.0, infinite, -infinite, std::numeric_limits<double>::quiet_NaN(),
-                                  std::numeric_limits<double>::max(), 0x1p-1022, 0x1p-1074};
+        const double special[] = {0.0,
+                                  -0.0,
+                                  infinite,
+                                  -infinite,
+                                  std::numeric_limits<double>::quiet_NaN(),
+                                  std::numeric_limits<double>::max(),
+                                  0x1p-1022,
+                                  0x1p-1074};
         return special[below(kind == patterns ? 8 : 2)];
     }
     switch (kind) {

@@ -68,21 +68,26 @@ MUTATIONS = [
      "extremum_error(magnitude) + evaluation_error(bv.vertex_influences, magnitude)"),
     (BOX, "extremum_error(magnitude) + evaluation_error(bv.vertex_influences, magnitude)", "extremum_error(magnitude)"),
     (BOX, "succ(bound + error)", "(bound + error)"),
-    (BOX, "bound = std::min(bound, dual_bound(space, b, best_lambda", "bound = std::max(bound, dual_bound(space, b, best_lambda"),
+    (BOX, "std::min(bound, dual_bound(space, b, best_lambda", "std::max(bound, dual_bound(space, b, best_lambda"),
     (BOX, "succ(4 * (n + 8)", "succ(4 * (n + 7)"),
     (BOX, "succ(4 * (n + 8)", "succ(3 * (n + 8)"),
     (BOX, "magnitude + 2 * n * smallest", "magnitude + 1 * n * smallest"),
     (BOX, "succ(best + succ(", "(best + succ("),
     (BOX, "raised + (slack - range) * b[j]", "(base + (slack - range) * b[j]) + range * b[i]"),
-    (EVALUATE, "((m[r][0] * x + m[r][1] * y) + m[r][2] * z) + m[r][3]", "(m[r][0] * x + (m[r][1] * y + m[r][2] * z)) + m[r][3]"),
+    (EVALUATE, "((m[r][0] * x + m[r][1] * y) + m[r][2] * z) + m[r][3]",
+     "(m[r][0] * x + (m[r][1] * y + m[r][2] * z)) + m[r][3]"),
     (EVALUATE, "for (std::size_t i = 0; i < row.node.size(); ++i) {\n        const auto& m",
      "for (std::size_t i = row.node.size(); i-- > 0;) {\n        const auto& m"),
     (ORIENTATION, "constant_3 = 49 *", "constant_3 = 48 *"),
     (ORIENTATION, "constant_2 = 9 *", "constant_2 = 8 *"),
     (ORIENTATION, "least_difference = 0x1p-320", "least_difference = 0x1p-321"),
     (ORIENTATION, "greatest_difference = 0x1p320", "greatest_difference = 0x1p321"),
-    (ORIENTATION, "q[0] * (p[1] * r[2] - p[2] * r[1])) +\n           r[0] *", "q[0] * (p[1] * r[2] - p[2] * r[1]) +\n           r[0] *"),
-    (ORIENTATION, "return p[0] * q[1] - p[1] * q[0];", "return p[0] * (q[1] - p[1] / p[0] * q[0]);"),
+    (ORIENTATION, "return (p[0] * (q[1] * r[2] - q[2] * r[1]) - q[0] * (p[1] * r[2] - p[2] * r[1])) +\n"
+     "           r[0] * (p[1] * q[2] - p[2] * q[1]);",
+     "return p[0] * (q[1] * r[2] - q[2] * r[1]) - (q[0] * (p[1] * r[2] - p[2] * r[1]) -\n"
+     "           r[0] * (p[1] * q[2] - p[2] * q[1]));"),
+    (ORIENTATION, "std::max({std::abs(p[i]), std::abs(q[i]), std::abs(r[i])})", "std::max(std::abs(p[i]), std::abs(q[i]))"),
+    (ORIENTATION, "greatest{std::max(std::abs(p[0]), std::abs(q[0]))", "greatest{std::abs(p[0])"),
     (ORIENTATION, "computed > error ? 1", "computed >= error ? 1"),
 ]
 
@@ -103,7 +108,8 @@ class Compiler:
     def compile(self, source, overlay=None):
         name = self.folder / ((overlay.name if overlay else "tree") + "-" + pathlib.Path(source).stem + ".o")
         file = overlay / source if overlay and (overlay / source).exists() else ROOT / source
-        flags = ["-std=c++20", "-O1", "-ffp-contract=off", "-fno-fast-math", "-fno-tree-vectorize", "-ffunction-sections"]
+        flags = ["-std=c++20", "-O1", "-ffp-contract=off", "-fno-fast-math", "-fno-tree-vectorize",
+                 "-ffunction-sections"]
         where = ([f"-I{overlay}"] if overlay else []) + [
             f"-I{ROOT}", f"-I{ROOT / 'toolkit/include'}", f"-I{self.folder / 'include'}", "-I/usr/include/eigen3"]
         # An overlay's header must be found before the one beside the including file.
@@ -120,7 +126,8 @@ class Compiler:
                     self.objects[source] = self.compile(source)
                 objects.append(self.objects[source])
         out = self.folder / ((overlay.name if overlay else "tree") + "-cases")
-        subprocess.run([os.environ.get("CXX", "g++"), *map(str, objects), "-Wl,--gc-sections", "-o", str(out)], check=True)
+        compiler = os.environ.get("CXX", "g++")
+        subprocess.run([compiler, *map(str, objects), "-Wl,--gc-sections", "-o", str(out)], check=True)
         return out
 
 
@@ -152,7 +159,8 @@ def mutations(compare):
             (overlay / file).write_text(text.replace(old, new))
             noticed = not agree(compiler.program(overlay, file), compare, 1, 4000, quiet=True)
             missed += not noticed
-            print(f"{'noticed' if noticed else 'MISSED '} {time.time() - start:5.1f} s  {file}: {old!r} -> {new!r}", flush=True)
+            took = f"{time.time() - start:5.1f} s"
+            print(f"{'noticed' if noticed else 'MISSED '} {took}  {file}: {old!r} -> {new!r}", flush=True)
     print(f"{len(MUTATIONS) - missed} of {len(MUTATIONS)} noticed")
     return 1 if missed else 0
 
