@@ -15,4 +15,4 @@ Extraction Language OCaml.
 Extraction "extracted.ml" make_ops succ_of model.sum_error model.extremum_error model.evaluation_error
   model.smallest_times model.dual_sums model.dual_bound model.second_largest model.extremum_of
     model.extremum_magnitude model.best_corner model.bound_box
-  model.evaluate_vertex model.filter3 model.filter2 binary64_ops binary32_ops.
+  model.evaluate_vertex model.bound_vertex model.filter3 model.filter2 binary64_ops binary32_ops.

@@ -21,6 +21,16 @@ Definition less_value (v w : value) : bool :=
   | Finite _, Plus => true
   end.
 
+Definition less_equal_value (v w : value) : bool :=
+  match v, w with
+  | Finite a, Finite b => Rle_bool a b
+  | Nan, _ | _, Nan => false
+  | Minus, _ => true
+  | _, Minus => false
+  | _, Plus => true
+  | Plus, _ => false
+  end.
+
 Section Ieee.
 Variables prec emin : Z.
 Context {format : Format prec emin}.
@@ -61,7 +71,7 @@ Record ieee {num : Type} (o : ops num) (view : num -> value) : Prop := {
   law_add_minus x y : view (add o x y) = Minus -> view y <> Plus /\ view y <> Nan;
   law_absolute x : view (absolute o x) = absolute_value (view x);
   law_less x y : less o x y = less_value (view x) (view y);
-  law_less_equal x y a b : view x = Finite a -> view y = Finite b -> less_equal o x y = Rle_bool a b
+  law_less_equal x y : less_equal o x y = less_equal_value (view x) (view y)
 }.
 
 Context {num : Type} {o : ops num} {view : num -> value}.

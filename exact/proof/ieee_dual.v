@@ -72,7 +72,7 @@ Proof.
   unfold dual_product. intros F. apply (mul_backward prec emin I) in F. destruct F as (_ & F & ->).
   pose proof F as FS. apply (sub_backward prec emin I) in F. destruct F as (B & L & V).
   split; [exact L |]. split; [exact B |]. destruct (zero_value prec emin I) as [FZ VZ].
-  rewrite (law_less_equal _ _ _ _ I _ _ _ _ (view_val _ FZ) (view_val _ FS)).
+  rewrite (law_less_equal _ _ _ _ I), (view_val _ FZ), (view_val _ FS). cbn [less_equal_value].
   rewrite VZ, V. rewrite model_zero. cbn [mul sub less_equal real_model.real_ops entry_value entry_b entry_h entry_l].
   destruct Rle_bool; reflexivity.
 Qed.

@@ -227,8 +227,14 @@ Proof.
         reflexivity.
     + destruct x as [s | [] | | s m e B], y as [t | [] | | t n f C]; try discriminate; try reflexivity; destruct t;
       reflexivity.
-  - intros x y a b X Y. apply finite_of_view in X, Y. destruct X as [FX <-]. destruct Y as [FY <-].
-    now apply Bleb_correct.
+  - intros x y. unfold binary_ops, less_equal.
+    destruct (is_finite x) eqn:FX.
+    + destruct (is_finite y) eqn:FY.
+      * rewrite Bleb_correct by assumption. now rewrite !view_finite by assumption.
+      * destruct x as [s | [] | | s m e B], y as [t | [] | | t n f C]; try discriminate; try reflexivity;
+          destruct s; reflexivity.
+    + destruct x as [s | [] | | s m e B], y as [t | [] | | t n f C]; try discriminate; try reflexivity;
+        destruct t; reflexivity.
 Qed.
 End Instance.
 

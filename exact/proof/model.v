@@ -190,6 +190,26 @@ Definition evaluate_vertex (x : triple num) (nodes : list (num * map_rows)) : tr
   let coordinate (f : map_rows -> row) := evaluate_coordinate x (map (fun n => (fst n, f (snd n))) nodes) in
   Triple _ (coordinate (at0 _)) (coordinate (at1 _)) (coordinate (at2 _)).
 
+(* bound_vertex (bounds/bound_vertex.cpp), one axis and side. *)
+Definition magnitude_row (x : triple num) (r : row) : num :=
+  let c := column r in
+  add o (add o (add o (absolute o (mul o (at0 _ c) (at0 _ x))) (absolute o (mul o (at1 _ c) (at1 _ x))))
+               (absolute o (mul o (at2 _ c) (at2 _ x)))) (absolute o (offset r)).
+Definition coordinate_magnitude (x : triple num) (nodes : list (num * row)) : num :=
+  fold_left (fun sum n => add o sum (mul o (fst n) (magnitude_row x (snd n)))) nodes zero.
+Definition upper_step (sign : Z) (coordinate error sum : num) : num :=
+  if sign =? 0 then sum
+  else let upper := succ (add o (mul o (constant o sign 0) coordinate) error) in
+       if less_equal o sum zero && less_equal o zero sum then upper else succ (add o sum upper).
+Definition bound_vertex (along : bool) (axis : triple Z) (x : triple num) (nodes : list (num * map_rows)) : num :=
+  let rows (f : map_rows -> row) := map (fun n => (fst n, f (snd n))) nodes in
+  let error f := evaluation_error (length_of nodes) (coordinate_magnitude x (rows f)) in
+  let finite f := less o (coordinate_magnitude x (rows f)) (infinity o) && less o (error f) (infinity o) in
+  let sign a := if along then a else - a in
+  let step a f := upper_step (sign a) (evaluate_coordinate x (rows f)) (error f) in
+  let sum := step (at2 _ axis) (at2 _) (step (at1 _ axis) (at1 _) (step (at0 _ axis) (at0 _) zero)) in
+  if finite (at0 _) && finite (at1 _) && finite (at2 _) && less o sum (infinity o) then sum else infinity o.
+
 (* collide/orientation.cpp: determinants of computed differences, and their filters. *)
 Definition difference (a b : triple num) : triple num :=
   Triple _ (sub o (at0 _ b) (at0 _ a)) (sub o (at1 _ b) (at1 _ a)) (sub o (at2 _ b) (at2 _ a)).

@@ -10,6 +10,7 @@
 
 #include "cinch/deform.hpp"
 #include "toolkit/bounds/bound_box.hpp"
+#include "toolkit/bounds/bound_vertex.hpp"
 #include "toolkit/bounds/rounding.hpp"
 #include "toolkit/bounds/weight_space.hpp"
 #include "toolkit/collide/orientation.hpp"
@@ -231,6 +232,19 @@ void vertices(std::size_t count)
         }
         for (int s = 0; s < 3; ++s)
             put(v[s]);
+        std::puts("");
+        const Axis axis = all_axes[below(all_axes.size())];
+        double supports[2];
+        bound_vertex(rest, {node, weight}, maps, Rounding::proven, std::span(&axis, 1), supports);
+        const std::size_t side = below(2);
+        std::printf("bound_vertex %zu %d %d %d %zu", side, axis[0], axis[1], axis[2], n);
+        for (int s = 0; s < 3; ++s)
+            put(rest[s]);
+        for (std::size_t j = 0; j < n; ++j) {
+            put(weight[j]);
+            put(maps[j]);
+        }
+        put(supports[side]);
         std::puts("");
     }
 }

@@ -111,6 +111,13 @@ let results a words =
     let v = evaluate_vertex a.ops x nodes in
     let c = triple num in
     [ (v.at0, c.at0); (v.at1, c.at1); (v.at2, c.at2) ]
+  | "bound_vertex" ->
+    let along = int () = 0 in
+    let axis = triple (fun () -> z (int ())) in
+    let n = int () in
+    let x = triple num in
+    let nodes = many n (fun () -> let w = num () in (w, map ())) in
+    [ (bound_vertex a.ops along axis x nodes, num ()) ]
   | "filter3" ->
     let p = triple num in let q = triple num in let r = triple num in let s = triple num in
     decided a (filter3 a.ops range p q r s) (int ())
@@ -147,7 +154,8 @@ let () =
      done
    with End_of_file -> ());
   let functions = [ "succ"; "succ32"; "smallest_times32"; "extremum_error"; "evaluation_error"; "sum_error";
-                    "second_largest"; "dual_bound"; "bound_box"; "evaluate_vertex"; "filter3"; "filter2" ] in
+                    "second_largest"; "dual_bound"; "bound_box"; "evaluate_vertex";
+                    "bound_vertex"; "filter3"; "filter2" ] in
   let short = List.filter (fun name ->
     let n, s = try Hashtbl.find seen name with Not_found -> (0, 0) in
     Printf.printf "%-18s %7d cases, %6d of them in Flocq's arithmetic\n" name n s;

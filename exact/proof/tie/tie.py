@@ -22,8 +22,8 @@ import time
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[2]
 SOURCES = ["toolkit/bounds/weight_space.cpp", "toolkit/bounds/bound_box.cpp", "toolkit/deform/evaluate.cpp",
-           "toolkit/collide/orientation.cpp", "exact/proof/tie/cases.cpp"]
-ROUNDING, (WEIGHTS, BOX, EVALUATE, ORIENTATION, _) = "toolkit/bounds/rounding.hpp", SOURCES
+           "toolkit/collide/orientation.cpp", "toolkit/bounds/bound_vertex.cpp", "exact/proof/tie/cases.cpp"]
+ROUNDING, (WEIGHTS, BOX, EVALUATE, ORIENTATION, VERTEX, _) = "toolkit/bounds/rounding.hpp", SOURCES
 
 # File, what stands there exactly once, and what is put in its place. (Not here, as it changes nothing: without
 # "!(absolute < infinite)" in dual_bound an infinite sum makes the error term infinite, or no number, all the same.)
@@ -78,6 +78,11 @@ MUTATIONS = [
      "(m[r][0] * x + (m[r][1] * y + m[r][2] * z)) + m[r][3]"),
     (EVALUATE, "for (std::size_t i = 0; i < row.node.size(); ++i) {\n        const auto& m",
      "for (std::size_t i = row.node.size(); i-- > 0;) {\n        const auto& m"),
+    (VERTEX, "succ(coordinate + error", "(coordinate + error"),
+    (VERTEX, "succ(sum + upper)", "(sum + upper)"),
+    (VERTEX, "(((std::abs(m[r][0] * rest[0]) + std::abs(m[r][1] * rest[1])) + std::abs(m[r][2] * rest[2])) +",
+     "((std::abs(m[r][0] * rest[0]) + (std::abs(m[r][1] * rest[1]) + std::abs(m[r][2] * rest[2]))) +"),
+    (VERTEX, "static_cast<double>(row.node.size())", "static_cast<double>(row.node.size() - 1)"),
     (ORIENTATION, "constant_3 = 49 *", "constant_3 = 48 *"),
     (ORIENTATION, "constant_2 = 9 *", "constant_2 = 8 *"),
     (ORIENTATION, "least_difference = 0x1p-320", "least_difference = 0x1p-321"),
