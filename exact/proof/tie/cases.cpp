@@ -214,12 +214,18 @@ void vertices(std::size_t count)
     for (std::size_t i = 0; i < count; ++i) {
         const std::size_t n = below(6);
         const Kind kind = any_kind();
-        const std::vector<AffineMap> maps = some_maps(n, kind);
+        std::vector<AffineMap> maps = some_maps(n, kind);
         node.resize(n);
         weight.resize(n);
         for (std::size_t j = 0; j < n; ++j) {
             node[j] = static_cast<std::uint32_t>(j);
             weight[j] = below(8) ? unit() : number(kind);
+        }
+        if (n == 2 && below(2)) { // the vertex is 0, so that every bit of the error terms shows
+            weight[1] = weight[0];
+            for (int r = 0; r < 3; ++r)
+                for (int c = 0; c < 4; ++c)
+                    maps[1].m[r][c] = -maps[0].m[r][c];
         }
         const Vec3 rest{number(kind), number(kind), number(kind)};
         const Vec3 v = evaluate_vertex(rest, {node, weight}, maps);
@@ -260,19 +266,32 @@ void signs(std::size_t count)
                 do
                     p[s] = number(kind);
                 while (!std::isfinite(p[s]));
+        if (kind == ordinary && below(2)) // of one size, so that leaves are about as large as the filter takes them
+            for (Vec3& p : point)
+                p = {sign() * unit(), sign() * unit(), sign() * unit()};
         if (below(2)) {
             const double a = unit(), b = unit();
             const Vec3 flat = point[0] + a * (point[1] - point[0]) + b * (point[2] - point[0]);
             if (flat.allFinite())
                 point[3] = flat;
+            if (below(2)) { // off it by some u of what the determinant's leaves are, about where the filter decides
+                const double off = (static_cast<double>(below(1025)) - 512) * unit_roundoff;
+                point[3] += off * (point[3] - point[0]).cwiseAbs().cwiseProduct(Vec3(sign(), sign(), sign()));
+            }
+        }
+        if (kind == ordinary && below(4) == 0) { // about the filter's least and greatest differences
+            const int e = (below(2) ? -320 : 320) + static_cast<int>(below(9)) - 4;
+            for (Vec3& p : point)
+                for (int s = 0; s < 3; ++s)
+                    p[s] = std::ldexp(p[s], e);
         }
         OrientationCounts counts;
-        const int sign = orientation(point[0], point[1], point[2], point[3], &counts);
+        const int sign3 = orientation(point[0], point[1], point[2], point[3], &counts);
         std::printf("filter3");
         for (const Vec3& p : point)
             for (int s = 0; s < 3; ++s)
                 put(p[s]);
-        std::printf(" %d\n", counts.in_double ? sign : 2);
+        std::printf(" %d\n", counts.in_double ? sign3 : 2);
         Vec2 q[3];
         for (int k = 0; k < 3; ++k)
             q[k] = point[k].head<2>();
@@ -303,5 +322,5 @@ int main(int argc, char** argv)
     duals(count);
     boxes((count + 1) / 2); // two sides each
     vertices(count);
-    signs(count);
+    signs(4 * count); // each is soon done, and those near the filter's limits are few
 }

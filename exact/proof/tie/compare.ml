@@ -28,7 +28,8 @@ let flocq ops width_of_significand width_of_exponent =
   let bias = (1 lsl (width_of_exponent - 1)) - 1 in
   let read s =
     let b = Int64.of_string ("0x" ^ s) in
-    let field low width = Int64.to_int (Int64.logand (Int64.shift_right_logical b low) (Int64.of_int ((1 lsl width) - 1))) in
+    let field low width =
+      Int64.to_int (Int64.logand (Int64.shift_right_logical b low) (Int64.of_int ((1 lsl width) - 1))) in
     let sign = field (fraction + width_of_exponent) 1 = 1 in
     let e = field fraction width_of_exponent and m = field 0 fraction in
     if e = (1 lsl width_of_exponent) - 1 then if m = 0 then B754_infinity sign else B754_nan
