@@ -46,6 +46,7 @@ Record ieee {num : Type} (o : ops num) (view : num -> value) : Prop := {
   law_number x r : view x = Finite r -> number r;
   law_constant m e : (Z.abs m < 2 ^ prec)%Z -> (emin <= e <= 0)%Z ->
     view (constant o m e) = Finite (IZR m * bpow radix2 e);
+  law_power e : (0 <= e <= - emin - prec)%Z -> view (constant o 1 e) = Finite (1 * bpow radix2 e);
   law_infinity : view (infinity o) = Plus;
   (* Finite numbers give the rounded result, unless that is beyond every finite number. *)
   law_add x y a b : view x = Finite a -> view y = Finite b ->

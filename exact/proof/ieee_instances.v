@@ -207,6 +207,18 @@ Proof.
       * simpl (bpow radix2 0). rewrite Rmult_1_r. apply Rlt_le_trans with (bpow radix2 prec).
         -- rewrite <- IZR_power by (unfold FLX.Prec_gt_0 in prec_gt_0_; lia). now apply IZR_lt.
         -- apply bpow_le. unfold Prec_lt_emax in prec_lt_emax_. lia.
+  - intros e E. cbn [constant binary_ops].
+    pose proof (binary_normalize_correct prec emax _ _ mode_NE 1 e false) as H. cbv zeta in H.
+    change (round radix2 (SpecFloat.fexp prec emax) (round_mode mode_NE)) with fl in H.
+    assert (N : F2R (Float radix2 1 e) = 1 * bpow radix2 e) by reflexivity.
+    pose proof (@prec_large prec emin format) as PL.
+    assert (P1 : (Z.abs 1 < 2 ^ prec)%Z).
+    { change (Z.abs 1) with 1%Z. apply Z.lt_le_trans with (2 ^ 24)%Z; [reflexivity | apply Z.pow_le_mono_r; lia]. }
+    pose proof (@emin_small prec emin format) as ES.
+    rewrite N in H. rewrite (fl_id prec emin) in H by (apply (scaled_number prec emin); [exact P1 | lia]).
+    rewrite Rlt_bool_true in H.
+    + destruct H as (V & F & _). rewrite view_finite by exact F. now rewrite V.
+    + rewrite Rmult_1_l, Rabs_pos_eq by apply bpow_ge_0. apply bpow_lt. lia.
   - exact add_law.
   - exact sub_law.
   - intros x y a b X Y. destruct (mul_law x y a b X Y) as [H | [H _]]; [now left | now right].
