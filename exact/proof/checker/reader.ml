@@ -2,6 +2,9 @@
 (* Lines of a certificate as the checker's, and the hashes of what they hold. *)
 open Json
 
+(* From the first to the last, which hashes depend on; lists may be long. *)
+let map f l = List.rev (List.rev_map f l)
+
 let format = "cinch 2"
 
 type hashes = {
@@ -45,7 +48,7 @@ let sha256 names value =
         refuse "a SHA-256 that is none";
       s
     in
-    List.combine names (List.map hash (fields names members))
+    List.combine names (map hash (fields names members))
   | _ -> refuse "sha256 is no object"
 
 (* ---- The header ---- *)
@@ -76,7 +79,7 @@ let header hashes members =
     let names = String.split_on_char '+' (text methods) in
     if List.length (List.sort_uniq compare names) <> List.length names then refuse "a method twice";
     if text shape <> "aabb" && text shape <> "obb" then refuse "rest_shape is unknown";
-    let missing = List.map text (list missing) in
+    let missing = map text (list missing) in
     if partial <> Truth (missing <> []) then refuse "partial does not fit to what is missing";
     hashes.missing <- missing;
     hashes.stated <- sha256 [ "positions"; "triangles"; "weights"; "method" ] sha;
@@ -86,7 +89,7 @@ let header hashes members =
       ([ format; text methods; text shape; Z.to_string (whole kdop); text clip ] @ missing);
     agree hashes "method" found;
     Checker.LHeader
-      { methods = List.map method_of names; oriented = text shape = "obb"; kdop = whole kdop;
+      { methods = map method_of names; oriented = text shape = "obb"; kdop = whole kdop;
         vertex_count = whole vertices; triangle_count = whole triangles; node_count = whole nodes;
         bv_count = whole bvs; frame_count = whole frames }
   | _ -> assert false
@@ -106,26 +109,26 @@ let index hash value =
 
 let vertex hashes i rest nodes weights =
   let rest =
-    match List.map (number hashes.positions) (list rest) with
+    match map (number hashes.positions) (list rest) with
     | [ px; py; pz ] -> { Checker.px; py; pz }
     | _ -> refuse "rest is no list of 3"
   in
   let nodes = list nodes and weights = list weights in
   if List.length nodes <> List.length weights then refuse "weights is no list of %d" (List.length nodes);
   Sha256.add_4 hashes.weights (List.length nodes);
-  let nodes = List.map (index hashes.weights) nodes in
-  let weights = List.map (number hashes.weights) weights in
+  let nodes = map (index hashes.weights) nodes in
+  let weights = map (number hashes.weights) weights in
   Checker.LVertex (whole i, { rest; influences = List.combine nodes weights })
 
 let triangle hashes i vertices =
-  match List.map (index hashes.triangles) (list vertices) with
+  match map (index hashes.triangles) (list vertices) with
   | [ corner_a; corner_b; corner_c ] -> Checker.LTriangle (whole i, { corner_a; corner_b; corner_c })
   | _ -> refuse "vertices is no list of 3"
 
 (* ---- Frames ---- *)
 
 let affine hash value =
-  let numbers = List.map (number hash) (list value) in
+  let numbers = map (number hash) (list value) in
   match numbers with
   | [ a; b; c; d; e; f; g; h; i; k; l; m ] ->
     { Checker.row_x = { ra = a; rb = b; rc = c; rt = d }; row_y = { ra = e; rb = f; rc = g; rt = h };
@@ -134,15 +137,15 @@ let affine hash value =
 
 let frame hashes i time maps =
   let time = number hashes.transforms time in
-  Checker.LFrame (whole i, time, List.map (affine hashes.transforms) (list maps))
+  Checker.LFrame (whole i, time, map (affine hashes.transforms) (list maps))
 
 let bound value = match value with Text "inf" -> None | _ -> Some (Number.dyadic (Number.of_json value))
 
 let claim frame i bounds lambdas =
   Checker.LClaim
     ( whole frame, whole i,
-      { bounds = List.map bound (list bounds);
-        lambdas = Option.map (fun l -> List.map Number.multiplier (list l)) lambdas } )
+      { bounds = map bound (list bounds);
+        lambdas = Option.map (fun l -> map Number.multiplier (list l)) lambdas } )
 
 let ending hashes members =
   match fields [ "end"; "frames"; "proven"; "infinite"; "violated"; "sha256" ] members with
@@ -182,12 +185,12 @@ let line hashes value =
       get [ "bv"; "children" ]
         (function
           | [ i; c ] ->
-            (match List.map whole (list c) with
+            (match map whole (list c) with
              | [ left; right ] -> Checker.LBv (whole i, Inner (left, right))
              | _ -> refuse "children is no list of 2")
           | _ -> wrong ())
     else if has "triangles" then
       get [ "bv"; "triangles" ]
-        (function [ i; t ] -> Checker.LBv (whole i, Leaf (List.map whole (list t))) | _ -> wrong ())
+        (function [ i; t ] -> Checker.LBv (whole i, Leaf (map whole (list t))) | _ -> wrong ())
     else ending hashes members
   | _ -> refuse "no JSON object"
