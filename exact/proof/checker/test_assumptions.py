@@ -40,7 +40,7 @@ def assumptions(folder, *theorems):
     with tempfile.TemporaryDirectory() as scratch:
         path = os.path.join(scratch, "Asked.v")
         with open(path, "w", encoding="ascii") as file:
-            file.write("From CinchChecker Require Import Soundness.\n")
+            file.write("From CinchChecker Require Import soundness.\n")
             file.writelines(f"Print Assumptions {t}.\n" for t in theorems)
         done = compiled(folder, path)
     assert done.returncode == 0, done.stderr
@@ -62,14 +62,14 @@ class AssumptionsTest(unittest.TestCase):
             for name in os.listdir(BUILT):
                 if name.endswith((".v", ".vo")):
                     shutil.copy2(os.path.join(BUILT, name), folder)
-            path = os.path.join(folder, "RunProof.v")
+            path = os.path.join(folder, "run_proof.v")
             with open(path, encoding="utf-8") as file:
                 text = file.read()
             first = text.index("Theorem accepted_is_checked")
             with open(path, "w", encoding="utf-8") as file:
                 file.write(text[:first] + text[first:].partition("Proof.")[0] + "Admitted.\n")
-            self.assertEqual(unproven_in(folder), ["RunProof.v: Admitted"])
-            for name in ("RunProof", "SurfaceProof", "FrameProof", "Soundness"):
+            self.assertEqual(unproven_in(folder), ["run_proof.v: Admitted"])
+            for name in ("run_proof", "surface_proof", "frame_proof", "soundness"):
                 self.assertEqual(compiled(folder, os.path.join(folder, name + ".v")).returncode, 0, name)
             self.assertIn("accepted_is_checked", {n.split(".")[-1] for n in assumptions(folder, THEOREMS[0])})
 

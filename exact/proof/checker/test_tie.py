@@ -14,16 +14,16 @@ COQC, BUILT, TIE = sys.argv[1:4]
 
 # A theory, what stands in it, what is put there, and the proof that fails
 CHANGES = (
-    ("Numbers", "if Z.even q then Z.shiftl q s", "if Z.even q then Z.shiftl (q + 1) s", "NumbersProof"),
-    ("Numbers", "Definition subnormal_bits : Z := 1074.", "Definition subnormal_bits : Z := 1075.", "NumbersProof"),
-    ("Numbers", "n <=? Z.shiftl (man d) e", "n - 1 <=? Z.shiftl (man d) e", "NumbersProof"),
-    ("Evaluation", "option_map (Z.max (unit_along g x y z))", "option_map (fun s => Z.min s (unit_along g x y z))",
-     "EvaluationProof"),
-    ("Tree", "is_tree (bv_count triangle_count : Z) (bs : list bv) : bool :=\n  each_once 1 (bv_count - 1)",
-     "is_tree (bv_count triangle_count : Z) (bs : list bv) : bool :=\n  each_once 0 bv_count", "SurfaceProof"),
-    ("Duality", "if 0 <? x then most e else least e", "if x <? 0 then most e else least e", "DualityProof"),
-    ("Duality", "Some (l, h), None => Some (Z.min l 0, Z.max h 0)", "Some (l, h), None => Some (l, h)", "DualityProof"),
-    ("Checker", "(violated_said e =? 0)", "true", "RunProof"),
+    ("numbers", "if Z.even q then Z.shiftl q s", "if Z.even q then Z.shiftl (q + 1) s", "numbers_proof"),
+    ("numbers", "Definition subnormal_bits : Z := 1074.", "Definition subnormal_bits : Z := 1075.", "numbers_proof"),
+    ("numbers", "n <=? Z.shiftl (man d) e", "n - 1 <=? Z.shiftl (man d) e", "numbers_proof"),
+    ("evaluation", "option_map (Z.max (unit_along g x y z))", "option_map (fun s => Z.min s (unit_along g x y z))",
+     "evaluation_proof"),
+    ("tree", "is_tree (bv_count triangle_count : Z) (bs : list bv) : bool :=\n  each_once 1 (bv_count - 1)",
+     "is_tree (bv_count triangle_count : Z) (bs : list bv) : bool :=\n  each_once 0 bv_count", "surface_proof"),
+    ("duality", "if 0 <? x then most e else least e", "if x <? 0 then most e else least e", "duality_proof"),
+    ("duality", "Some (l, h), None => Some (Z.min l 0, Z.max h 0)", "Some (l, h), None => Some (l, h)", "duality_proof"),
+    ("checker", "(violated_said e =? 0)", "true", "run_proof"),
 )
 
 

@@ -1,7 +1,7 @@
 (* SPDX-License-Identifier: GPL-3.0-or-later *)
 (* Tables by index, and lists that may be long: every function here that goes through one is a loop. *)
 From Coq Require Import ZArith List FMapPositive.
-From CinchChecker Require Import Content.
+From CinchChecker Require Import content.
 Import ListNotations.
 Open Scope Z_scope.
 

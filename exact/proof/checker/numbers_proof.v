@@ -2,7 +2,7 @@
 (* Units are the real values; `rounded` is the rounding of binary64. *)
 From Coq Require Import ZArith List Bool Reals Lia Lra.
 From Flocq Require Import Core.
-From CinchChecker Require Import Content Statement Numbers.
+From CinchChecker Require Import content statement numbers.
 Import ListNotations.
 Open Scope R_scope.
 

@@ -2,7 +2,7 @@
 (* The theorems: a certificate that is accepted is true. *)
 From Coq Require Import ZArith List Reals.
 From Flocq Require Import BinarySingleNaN.
-From CinchChecker Require Import Content Statement Checker RunProof FrameProof IeeeProof.
+From CinchChecker Require Import content statement checker run_proof frame_proof ieee_proof.
 Open Scope R_scope.
 
 Theorem accepted_certificates_are_true : forall ls, accepts ls = true -> exists c, ls = lines c /\ proves c.

@@ -2,7 +2,7 @@
 (* Supports of a vertex enclose it, in real arithmetic and in doubles. *)
 From Coq Require Import ZArith List Bool Reals Lia Lra.
 From Flocq Require Import Core.
-From CinchChecker Require Import Content Statement Table Numbers Evaluation NumbersProof TableProof.
+From CinchChecker Require Import content statement table numbers evaluation numbers_proof table_proof.
 Import ListNotations.
 Open Scope R_scope.
 

@@ -2,7 +2,7 @@
 (* Extraction to OCaml. Whole numbers become zarith's by whole.ml; nothing else is mapped but booleans, options, lists
    and pairs. *)
 From Coq Require Import ZArith List Extraction ExtrOcamlBasic.
-From CinchChecker Require Import Content Checker.
+From CinchChecker Require Import content checker.
 
 Extract Inductive positive => "Whole.t" ["Whole.x_i" "Whole.x_o" "Whole.one"] "Whole.match_positive".
 Extract Inductive Z => "Whole.t" ["Whole.zero" "" "Whole.opp"] "Whole.match_z".
@@ -25,4 +25,4 @@ Extract Constant Z.compare =>
   "(fun x y -> let c = Whole.compare x y in if c = 0 then Eq else if c < 0 then Lt else Gt)".
 
 Extraction Blacklist Z List Whole String.
-Extraction "checker.ml" Checker.step.
+Extraction "checker.ml" checker.step.

@@ -1,7 +1,7 @@
 (* SPDX-License-Identifier: GPL-3.0-or-later *)
 (* What is collected along the tree concerns every vertex below; and the tree is one: every BV has one way to it. *)
 From Coq Require Import ZArith List Bool Permutation Lia.
-From CinchChecker Require Import Content Statement Table Tree TableProof.
+From CinchChecker Require Import content statement table tree table_proof.
 Import ListNotations.
 Open Scope Z_scope.
 

@@ -1,7 +1,7 @@
 (* SPDX-License-Identifier: GPL-3.0-or-later *)
 (* Weak duality over a BV's rest box and weight intervals: bound >= D(lambda). *)
 From Coq Require Import ZArith List Bool FMapPositive.
-From CinchChecker Require Import Content Table Numbers Evaluation.
+From CinchChecker Require Import content table numbers evaluation.
 Import ListNotations.
 Open Scope Z_scope.
 

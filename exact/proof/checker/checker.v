@@ -1,7 +1,7 @@
 (* SPDX-License-Identifier: GPL-3.0-or-later *)
 (* The checker: line after line of a certificate, from Start to Done. *)
 From Coq Require Import ZArith List Bool.
-From CinchChecker Require Import Content Table Numbers Evaluation Tree Duality.
+From CinchChecker Require Import content table numbers evaluation tree duality.
 Import ListNotations.
 Open Scope Z_scope.
 

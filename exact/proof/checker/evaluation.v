@@ -2,7 +2,7 @@
 (* The supports of a vertex in one frame: how far it reaches along each direction, in real arithmetic and in doubles,
    whichever is farther. *)
 From Coq Require Import ZArith List Bool.
-From CinchChecker Require Import Content Table Numbers.
+From CinchChecker Require Import content table numbers.
 Import ListNotations.
 Open Scope Z_scope.
 

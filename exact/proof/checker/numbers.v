@@ -1,7 +1,7 @@
 (* SPDX-License-Identifier: GPL-3.0-or-later *)
 (* Numbers as whole multiples of a power of two ("units" of 2 ^ -k), and the rounding of doubles among them. *)
 From Coq Require Import ZArith List Bool.
-From CinchChecker Require Import Content.
+From CinchChecker Require Import content.
 Import ListNotations.
 Open Scope Z_scope.
 

@@ -2,8 +2,8 @@
 (* Weak duality: a bound above D(lambda), for whatever lambda, holds for all that box and weight intervals allow. *)
 From Coq Require Import ZArith List Bool Reals FMapPositive SetoidList Lia Lra.
 From Flocq Require Import Core.
-From CinchChecker Require Import Content Statement Table Numbers Evaluation Duality NumbersProof TableProof
-  EvaluationProof.
+From CinchChecker Require Import content statement table numbers evaluation duality numbers_proof table_proof
+  evaluation_proof.
 Import ListNotations.
 Open Scope R_scope.
 

@@ -1,7 +1,7 @@
 (* SPDX-License-Identifier: GPL-3.0-or-later *)
 (* A run that ends in Done has read the lines of a content, and has checked all of it. *)
 From Coq Require Import ZArith List Bool Lia.
-From CinchChecker Require Import Content Statement Table Numbers Evaluation Tree Duality Checker TableProof.
+From CinchChecker Require Import content statement table numbers evaluation tree duality checker table_proof.
 Import ListNotations.
 Open Scope Z_scope.
 

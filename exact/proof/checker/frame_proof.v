@@ -2,9 +2,9 @@
 (* Checked frames: what their bounds enclose. *)
 From Coq Require Import ZArith List Bool Reals Lia Lra.
 From Flocq Require Import Core.
-From CinchChecker Require Import Content Statement Table Numbers Evaluation Tree Duality Checker NumbersProof
-  TableProof
-  EvaluationProof TreeProof DualityProof RunProof SurfaceProof.
+From CinchChecker Require Import content statement table numbers evaluation tree duality checker numbers_proof
+  table_proof
+  evaluation_proof tree_proof duality_proof run_proof surface_proof.
 Import ListNotations.
 Open Scope Z_scope.
 

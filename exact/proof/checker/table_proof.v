@@ -1,7 +1,7 @@
 (* SPDX-License-Identifier: GPL-3.0-or-later *)
 (* Tables hold what their lists hold. *)
 From Coq Require Import ZArith List Bool FMapPositive Permutation Lia.
-From CinchChecker Require Import Content Statement Table.
+From CinchChecker Require Import content statement table.
 Import ListNotations.
 Open Scope Z_scope.
 

@@ -2,7 +2,7 @@
 (* What it means, over the real numbers, that a certificate proves its bounds. Nothing here is run. *)
 From Coq Require Import ZArith List Reals Permutation.
 From Flocq Require Import Core.
-From CinchChecker Require Import Content.
+From CinchChecker Require Import content.
 Import ListNotations.
 Open Scope R_scope.
 

@@ -2,7 +2,7 @@
 (* The computed statement for IEEE 754 itself: Flocq's binary64 with signed zeros, infinities and NaN. *)
 From Coq Require Import ZArith List Bool Reals Lia Lra.
 From Flocq Require Import Core BinarySingleNaN.
-From CinchChecker Require Import Content Statement.
+From CinchChecker Require Import content statement.
 Import ListNotations.
 Open Scope R_scope.
 

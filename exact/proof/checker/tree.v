@@ -1,7 +1,7 @@
 (* SPDX-License-Identifier: GPL-3.0-or-later *)
 (* The tree of BVs: that it is one, and what of the vertices is collected along it, from the leaves to the root. *)
 From Coq Require Import ZArith List Bool.
-From CinchChecker Require Import Content Table.
+From CinchChecker Require Import content table.
 Import ListNotations.
 Open Scope Z_scope.
 

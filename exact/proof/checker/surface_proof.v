@@ -2,8 +2,8 @@
 (* A checked surface is whole: convex weights, triangles that exist, one tree over all of them. *)
 From Coq Require Import ZArith List Bool Reals Permutation Lia Lra.
 From Flocq Require Import Core.
-From CinchChecker Require Import Content Statement Table Numbers Evaluation Tree Checker NumbersProof TableProof
-  EvaluationProof TreeProof RunProof.
+From CinchChecker Require Import content statement table numbers evaluation tree checker numbers_proof table_proof
+  evaluation_proof tree_proof run_proof.
 Import ListNotations.
 Open Scope Z_scope.
 
