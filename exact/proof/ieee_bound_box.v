@@ -6,7 +6,7 @@
 From Coq Require Import Reals Lra Lia ZArith List Bool Permutation.
 From Flocq Require Import Core.
 From CinchProof Require Import duality geometry rounding successor model real_model dual_bound extremum evaluation
-  chain ieee ieee_dual ieee_extremum.
+  chain ieee ieee_forward ieee_dual ieee_extremum.
 Import ListNotations.
 Open Scope R_scope.
 
@@ -26,28 +26,6 @@ Notation influence := (influence (num := num)).
 
 Definition influence_value (n : influence) : model.influence (num := R) :=
   Influence (val (influence_l n)) (val (influence_h n)) (map_value (influence_map n)).
-
-(* The least of the greatest: extrema that are finite or +infinity, a finite greatest. *)
-Lemma greatest_finite others : forall b0,
-  Forall (fun b => finite b \/ view b = Plus) (b0 :: others) -> finite (greatest o b0 others) ->
-  Forall (fun b => finite b /\ val b <= val (greatest o b0 others)) (b0 :: others).
-Proof.
-  unfold greatest. induction others as [| b1 others IH]; intros b0 F G; cbn [fold_left] in *.
-  - constructor; [| constructor]. split; [exact G | apply Rle_refl].
-  - inversion F as [| ? ? F0 F' ]; subst. inversion F' as [| ? ? F1 F2]; subst.
-    assert (M : finite (max o b0 b1) \/ view (max o b0 b1) = Plus) by (unfold max; destruct less; assumption).
-    specialize (IH (max o b0 b1) (Forall_cons _ M F2) G). inversion IH as [| ? ? [FM LM] R]; subst.
-    assert (H : finite b0 /\ finite b1).
-    { unfold max in FM. rewrite (law_less _ _ _ _ I) in FM.
-      destruct F0 as [[r0 E0] | E0], F1 as [[r1 E1] | E1]; rewrite E0, E1 in FM; simpl in FM.
-      - split; [now exists r0 | now exists r1].
-      - destruct FM as [r Er]. rewrite E1 in Er. discriminate.
-      - destruct FM as [r Er]. rewrite E0 in Er. discriminate.
-      - destruct FM as [r Er]. rewrite E0 in Er. discriminate. }
-    destruct H as [H0 H1]. destruct (max_finite prec emin I b0 b1 H0 H1) as [_ V]. rewrite V in LM.
-    pose proof (Rmax_l (val b0) (val b1)). pose proof (Rmax_r (val b0) (val b1)).
-    constructor; [split; [exact H0 | lra] |]. constructor; [split; [exact H1 | lra] | exact R].
-Qed.
 
 (* The largest magnitude. *)
 Lemma largest_finite axis b maps : good_box (view := view) b -> finite (largest_magnitude o axis b maps) ->
@@ -112,7 +90,7 @@ Lemma greatest_sound b0 others : map extremum_at nodes = b0 :: others ->
 Proof.
   intros E F G.
   assert (F' : Forall (fun b => finite b \/ view b = Plus) (b0 :: others)) by (rewrite <- E; now apply Forall_map).
-  pose proof (greatest_finite others b0 F' G) as A. rewrite <- E in A. rewrite Forall_map in A.
+  pose proof (greatest_finite prec emin I others b0 F' G) as A. rewrite <- E in A. rewrite Forall_map in A.
   split; [apply Forall_impl with (2 := A); now intros n [H _] |].
   intros weights (M & W & P). apply (convex_bound _ _ W). apply Forall_map. apply Forall_forall. intros p In.
   cbn [fst snd node_at extremum]. rewrite Forall_forall in A, P. split; [now apply P |].

@@ -33,7 +33,7 @@ Qed.
 Lemma not_beyond k r : (0 <= k <= top)%Z -> Rabs r <= bpow radix2 k ->
   ~ (forall y c, view y = Finite c -> Rabs c < Rabs r).
 Proof.
-  intros K B H. specialize (H _ _ (law_power _ _ _ _ I k K)).
+  intros K B H. specialize (H _ _ (law_power _ _ _ _ I k ltac:(lia))).
   rewrite Rmult_1_l, Rabs_pos_eq in H by apply bpow_ge_0. lra.
 Qed.
 
