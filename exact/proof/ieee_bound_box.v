@@ -1,12 +1,10 @@
 (* SPDX-License-Identifier: GPL-3.0-or-later *)
 (* bound_box of toolkit/bounds/bound_box.cpp over IEEE values: a finite support is at least every vertex of the BV,
-  exact
-   and as evaluate_vertex computes it, along every axis and against it, for convex, eq12 and limited. (For corners it is
-   not true of numbers near overflow; README.md.) *)
+   exact and as evaluate_vertex computes it, along every axis and against it, by any of its methods. *)
 From Coq Require Import Reals Lra Lia ZArith List Bool Permutation.
 From Flocq Require Import Core.
 From CinchProof Require Import duality geometry rounding successor model real_model dual_bound extremum evaluation
-  chain ieee ieee_forward ieee_dual ieee_extremum.
+  chain ieee ieee_forward ieee_dual ieee_corners ieee_extremum.
 Import ListNotations.
 Open Scope R_scope.
 
@@ -97,14 +95,41 @@ Proof.
   apply A. rewrite <- M. now apply in_map.
 Qed.
 
-Theorem methods_sound how : how <> corners -> IZR (length_of nodes) * u <= / 8 ->
+(* What corners needs besides: weight intervals in units of u. *)
+Definition fit_for (how : method (num := num)) : Prop := how = corners ->
+  Forall (fun n => unit_interval prec (view := view) (influence_l n) (influence_h n)) nodes /\
+  INR (length nodes + 8) * u <= / 16.
+
+Lemma corners_sound : fit_for corners -> nodes <> [] ->
+  Forall (fun n => finite (extremum_at n) \/ view (extremum_at n) = Plus) nodes ->
+  sound (best_corner o (entries nodes (map extremum_at nodes))).
+Proof.
+  intros Fit Ne E F. destruct (Fit eq_refl) as [U S]. rewrite entries_map in *.
+  set (all := map (fun n => Entry (influence_l n) (influence_h n) (extremum_at n)) nodes) in *.
+  assert (H : forall weights, map fst weights = map (fun e => node_of_entry (entry_value (view := view) e)) all ->
+    in_space weights -> mean weights <= val (best_corner o all)).
+  { intros weights M W. apply (best_corner_sound prec emin I); trivial.
+    - unfold all. intros Z. now apply map_eq_nil in Z.
+    - unfold all. apply Forall_map. rewrite Forall_forall in U, E |- *. intros n In. split; [exact (U n In) | exact (E n
+        In)].
+    - unfold all. now rewrite map_length. }
+  split.
+  - apply (best_corner_finite prec emin I) in F.
+    + unfold all in F. rewrite Forall_map in F. exact F.
+    + unfold all. intros Z. now apply map_eq_nil in Z.
+    + unfold all. apply Forall_map. exact E.
+  - intros weights (M & W & _). apply H; [| exact W]. unfold all. rewrite !map_map. cbn [fst].
+    rewrite <- (map_map fst node_at), M. reflexivity.
+Qed.
+
+Theorem methods_sound how : fit_for how -> IZR (length_of nodes) * u <= / 8 ->
   Forall (fun n => finite (extremum_at n) \/ view (extremum_at n) = Plus) nodes -> nodes <> [] ->
   sound (box_free_bound o how nodes (map extremum_at nodes)).
 Proof.
   intros How N F Ne. unfold box_free_bound. destruct (map extremum_at nodes) as [| b0 others] eqn:E.
   - apply map_eq_nil in E. congruence.
   - pose proof (greatest_sound b0 others E F) as G. rewrite <- E.
-    destruct how as [| | lambda |]; [exact G | | | congruence].
+    destruct how as [| | lambda |]; [exact G | | | now apply corners_sound].
     + apply min_sound; [exact G | now apply dual_sound].
     + apply min_sound; [apply min_sound; [exact G | now apply dual_sound] | now apply dual_sound].
 Qed.
@@ -183,7 +208,7 @@ Proof.
 Qed.
 
 Theorem bound_box_sound how along axis b k nodes x weights row :
-  how <> corners -> is_axis axis -> good_box (view := view) b -> few_influences k -> IZR (length_of nodes) * u <= / 8 ->
+  fit_for nodes how -> is_axis axis -> good_box (view := view) b -> few_influences k -> IZR (length_of nodes) * u <= / 8 ->
   vertex_of_bv b k nodes x weights row ->
   finite (bound_box o how along axis b (Z.of_nat k) nodes) ->
   let support := val (bound_box o how along axis b (Z.of_nat k) nodes) in

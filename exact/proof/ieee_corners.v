@@ -329,15 +329,24 @@ Proof.
       * right; now right.
 Qed.
 
+Lemma best_corner_finite nodes : nodes <> [] ->
+  Forall (fun e => finite (entry_b e) \/ view (entry_b e) = Plus) nodes -> finite (best_corner o nodes) ->
+  Forall (fun e => finite (entry_b e)) nodes.
+Proof.
+  intros Ne P F. destruct nodes as [| a [| b nodes]]; [congruence | now repeat constructor |].
+  unfold best_corner in F. destruct (less o (corner_magnitude o (a :: b :: nodes)) (most_safe o)) eqn:L;
+    [| now apply (infinity_not_finite prec emin I) in F].
+  destruct (magnitude_finite _ P L) as (_ & _ & B). apply Forall_impl with (2 := B). intros e [Q _]. exact Q.
+Qed.
+
 Theorem best_corner_sound nodes weights : nodes <> [] ->
   Forall (fun e => unit_interval (entry_l e) (entry_h e) /\ (finite (entry_b e) \/ view (entry_b e) = Plus)) nodes ->
   INR (length nodes + 8) * u <= / 16 ->
   map fst weights = map (fun e => node_of_entry (entry_value e)) nodes -> in_space weights ->
-  finite (best_corner o nodes) ->
-  Forall (fun e => finite (entry_b e)) nodes /\ mean weights <= val (best_corner o nodes).
+  finite (best_corner o nodes) -> mean weights <= val (best_corner o nodes).
 Proof.
   intros Ne H Sm E W F. rewrite <- (map_map entry_value node_of_entry) in E. destruct nodes as [| a [| b nodes]]; [congruence | |].
-  { split; [constructor; [exact F | constructor] |]. exact (only_node (entry_value a) weights E W). }
+  { exact (only_node (entry_value a) weights E W). }
   set (all := a :: b :: nodes) in *.
   change (best_corner o all) with (if less o (corner_magnitude o all) (most_safe o) then corner_bound o all
                                    else infinity o) in *.
@@ -351,7 +360,6 @@ Proof.
   assert (Bf : Forall (fun e => finite (entry_b e)) all) by (apply Forall_impl with (2 := B); intros e [P _]; exact P).
   assert (C : Forall (corner_entry prec emin) (map entry_value all)).
   { apply Forall_map. apply Forall_impl with (2 := EB). intros e. apply entry_below_corner. }
-  split; [exact Bf |].
   assert (SL : sum entry_l (map entry_value all) <= 1).
   { destruct W as [Win Wsum]. rewrite <- Wsum.
     assert (Q : sum entry_l (map entry_value all) = sum (fun p => low (fst p)) weights).

@@ -3,7 +3,7 @@
 From Coq Require Import Reals Lra Lia ZArith List.
 From Flocq Require Import Core BinarySingleNaN.
 From CinchProof Require Import duality geometry rounding successor model real_model dual_bound extremum evaluation chain
-  ieee ieee_instances ieee_dual ieee_extremum ieee_bound_box vertex_bound.
+  ieee ieee_instances ieee_dual ieee_corners ieee_extremum ieee_bound_box vertex_bound.
 Import ListNotations.
 Open Scope R_scope.
 
@@ -45,7 +45,7 @@ Proof. intros N F. exact (proj2 (proj2 (dual_bound_finite 53 (-1074) binary64_ie
 
 (* bound_box as it runs. *)
 Theorem bound_box_double how along axis (b : box (num := double)) k nodes x weights row :
-  how <> corners -> is_axis axis -> good_box (view := view64) b -> (1 <= Z.of_nat k <= 1048576)%Z ->
+  fit_for 53 (view := view64) nodes how -> is_axis axis -> good_box (view := view64) b -> (1 <= Z.of_nat k <= 1048576)%Z ->
   (length_of nodes <= 2 ^ 50)%Z -> vertex_of_bv (view := view64) b k nodes x weights row ->
   finite (view := view64) (bound_box binary64_ops how along axis b (Z.of_nat k) nodes) ->
   let support := val (view := view64) (bound_box binary64_ops how along axis b (Z.of_nat k) nodes) in
