@@ -45,6 +45,22 @@ Proof.
       apply Permutation_trans with (2 := Q). now constructor.
 Qed.
 
+Lemma picks_map {A B} (f : A -> B) s : forall before,
+  picks (map f before) (map f s) = map (fun p => (f (fst p), map f (snd p))) (picks before s).
+Proof.
+  induction s as [| a s IH]; intros before; [reflexivity |]. cbn [map picks fst snd]. rewrite map_app. f_equal.
+  specialize (IH (before ++ [a])). rewrite map_app in IH. exact IH.
+Qed.
+Lemma picks_within {A} (s : list A) : forall before i others, In (i, others) (picks before s) ->
+  In i s /\ forall j, In j others -> In j (before ++ s).
+Proof.
+  induction s as [| a s IH]; intros before i others; [contradiction |]. intros [E | H].
+  - injection E as <- <-. split; [now left |]. intros j J. apply in_app_or in J. apply in_or_app.
+    destruct J as [J | J]; [now left | right; now right].
+  - destruct (IH _ _ _ H) as [Ii J]. split; [now right |]. intros j Ij. specialize (J j Ij).
+    rewrite <- app_assoc in J. exact J.
+Qed.
+
 Section Corners.
 Variables prec emin : Z.
 Context {format : Format prec emin}.

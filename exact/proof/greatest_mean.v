@@ -26,9 +26,11 @@ Definition mean_entry (e : entry) : Prop :=
 Definition above_term (t : R) (e : entry) : R := (entry_h e - entry_l e) * Rmax (entry_b e - t) 0.
 
 Lemma real_max a b : max real_ops a b = Rmax a b.
-Proof. unfold max. cbn [less real_model.real_ops]. case Rlt_bool_spec; intros; [rewrite Rmax_right | rewrite Rmax_left]; lra. Qed.
+Proof. unfold max. cbn [less real_model.real_ops]. case Rlt_bool_spec; intros; [rewrite Rmax_right | rewrite
+  Rmax_left]; lra. Qed.
 Lemma real_min a b : min real_ops a b = Rmin a b.
-Proof. unfold min. cbn [less real_model.real_ops]. case Rlt_bool_spec; intros; [rewrite Rmin_right | rewrite Rmin_left]; lra. Qed.
+Proof. unfold min. cbn [less real_model.real_ops]. case Rlt_bool_spec; intros; [rewrite Rmin_right | rewrite
+  Rmin_left]; lra. Qed.
 
 (* The greatest and the second-greatest: above the second there is at most one. *)
 Lemma two_greatest_fold nodes : Forall mean_entry nodes -> forall most second (above : R -> R),
@@ -108,7 +110,8 @@ Lemma sum_approximates second nodes : number second -> Forall mean_entry nodes -
 Proof.
   intros Ns. induction 1 as [| m nodes M F IH]; intros n s e X A; cbn [fold_left length].
   - unfold sum. simpl. rewrite !Rplus_0_r, Nat.add_0_r. exact A.
-  - rewrite !sum_cons, <- (Rplus_assoc e), <- (Rplus_assoc X). replace (n + S (length nodes))%nat with (S n + length nodes)%nat by lia.
+  - rewrite !sum_cons, <- (Rplus_assoc e), <- (Rplus_assoc X). replace (n + S (length nodes))%nat with (S n + length
+    nodes)%nat by lia.
     apply IH. pose proof (u_positive prec) as U.
     pose proof (approximates_weaken prec emin 4 (n + 4) _ _ _ _ _ ltac:(lia) (Rle_refl _)
                   (term_approximates second m Ns M)) as T.
@@ -153,7 +156,8 @@ Proof.
     now apply approximates_exact. }
   pose proof (sum_approximates second nodes NS F 0 _ _ _ A0) as (NSum & _ & Err). cbn [Nat.add] in Err.
   fold (mean_sum real_ops second nodes) in Err, NSum.
-  change (fold_left (fun s m => fl (s + mean_term real_ops second m)) nodes second) with (mean_sum real_ops second nodes)
+  change (fold_left (fun s m => fl (s + mean_term real_ops second m)) nodes second) with (mean_sum real_ops second
+    nodes)
     in Err, NSum.
   set (s := mean_sum real_ops second nodes) in *. set (n := length nodes) in *.
   set (exact := second + sum (fun m => dual_term second (node_of_entry m)) nodes) in *.
@@ -196,7 +200,8 @@ Proof.
   apply Rabs_le_inv in Err. apply Rabs_le_inv in XE.
   (* the error term *)
   assert (Big : (4 * (Z.of_nat n + 8) < 2 ^ prec)%Z).
-  { pose proof (@prec_large prec emin format). apply lt_IZR. rewrite IZR_power, mult_IZR, plus_IZR, <- INR_IZR_INZ by lia.
+  { pose proof (@prec_large prec emin format). apply lt_IZR. rewrite IZR_power, mult_IZR, plus_IZR, <- INR_IZR_INZ by
+    lia.
     assert (HU : u * bpow radix2 prec = 1)
       by (unfold u, rounding.u; rewrite <- bpow_plus, Z.add_opp_diag_l; reflexivity).
     pose proof (bpow_gt_0 radix2 prec).
@@ -204,12 +209,14 @@ Proof.
       by (rewrite <- Rmult_assoc; apply Rmult_le_compat_r; lra). rewrite HU in *. lra. }
   assert (U4 : bpow radix2 (2 - prec) = 4 * u).
   { unfold u, rounding.u. unfold Z.sub. rewrite bpow_plus. change (bpow radix2 2) with 4. reflexivity. }
-  assert (T : mean_error real_ops (length_of (e0 :: rest)) most = fl (fl (4 * (INR n + 8) * u * most) + 2 * INR n * eta)).
+  assert (T : mean_error real_ops (length_of (e0 :: rest)) most = fl (fl (4 * (INR n + 8) * u * most) + 2 * INR n *
+    eta)).
   { unfold mean_error. rewrite model_smallest. cbn [add mul constant precision real_model.real_ops].
     simpl (bpow radix2 0). rewrite !Rmult_1_r, Rmult_1_l, U4. unfold length_of. fold n. rewrite <- plus_IZR.
     rewrite (fl_id prec emin (IZR _)) by (apply (integer_number prec emin); lia).
     replace (IZR (Z.of_nat n + 8) * (4 * u)) with (IZR (4 * (Z.of_nat n + 8)) * u) by (rewrite mult_IZR; ring).
-    rewrite (integer_u prec emin (4 * (Z.of_nat n + 8))) by lia. rewrite !mult_IZR, plus_IZR, <- INR_IZR_INZ. reflexivity. }
+    rewrite (integer_u prec emin (4 * (Z.of_nat n + 8))) by lia. rewrite !mult_IZR, plus_IZR, <- INR_IZR_INZ.
+      reflexivity. }
   rewrite T. set (q := 4 * (INR n + 8) * u * most). set (t := fl q). set (r := fl (t + 2 * INR n * eta)).
   assert (UM : 0 <= u * most) by (apply Rmult_le_pos; lra).
   assert (NUM : 0 <= INR n * (u * most)) by (apply Rmult_le_pos; lra).
@@ -248,7 +255,8 @@ Proof.
     apply Rabs_le_inv in S1. apply Rabs_le. lra. }
   assert (Us : u * Rabs (s + r) <= u * (3 * most + (4 * INR n + 1) * eta)) by (apply Rmult_le_compat_l; lra).
   apply Rabs_le_inv in EF.
-  replace (u * (3 * most + (4 * INR n + 1) * eta)) with (3 * (u * most) + 4 * (INR n * u * eta) + u * eta) in Us by ring.
+  replace (u * (3 * most + (4 * INR n + 1) * eta)) with (3 * (u * most) + 4 * (INR n * u * eta) + u * eta) in Us by
+    ring.
   replace (17 / 16 * ((INR n + 4) * u) * (2 * most)) with (17 / 8 * (INR n * (u * most)) + 17 / 2 * (u * most)) in GX
     by field.
   replace (u * (q + u * q + eta / 2 + 2 * INR n * eta))
@@ -347,7 +355,8 @@ Proof.
     constructor; [unfold max; destruct (less o s a); assumption | exact Ht]. }
   assert (FM : finite most).
   { destruct (G _ _ FP) as [K | K]; rewrite <- MG in K; [exact K |]. exfalso.
-    rewrite (law_less _ _ _ _ I most), K, (law_infinity _ _ _ _ I) in F. cbn [less_value negb orb] in F. destruct F as [r F]. congruence. }
+    rewrite (law_less _ _ _ _ I most), K, (law_infinity _ _ _ _ I) in F. cbn [less_value negb orb] in F. destruct F
+      as [r F]. congruence. }
   assert (FB : Forall (fun e => finite (entry_b e)) nodes).
   { rewrite MG in FM. pose proof (greatest_finite prec emin I _ _ FP FM) as K. apply Forall_inv_tail in K.
     rewrite Forall_map in K. apply Forall_impl with (2 := K). intros e [P _]. exact P. }

@@ -208,7 +208,8 @@ Proof.
 Qed.
 
 Theorem bound_box_sound how along axis b k nodes x weights row :
-  fit_for nodes how -> is_axis axis -> good_box (view := view) b -> few_influences k -> IZR (length_of nodes) * u <= / 8 ->
+  fit_for nodes how -> is_axis axis -> good_box (view := view) b -> few_influences k -> IZR (length_of nodes) * u <=
+    / 8 ->
   vertex_of_bv b k nodes x weights row ->
   finite (bound_box o how along axis b (Z.of_nat k) nodes) ->
   let support := val (bound_box o how along axis b (Z.of_nat k) nodes) in

@@ -8,22 +8,6 @@ From CinchProof Require Import duality rounding successor approximation model re
 Import ListNotations.
 Open Scope R_scope.
 
-Lemma picks_map {A B} (f : A -> B) s : forall before,
-  picks (map f before) (map f s) = map (fun p => (f (fst p), map f (snd p))) (picks before s).
-Proof.
-  induction s as [| a s IH]; intros before; [reflexivity |]. cbn [map picks fst snd]. rewrite map_app. f_equal.
-  specialize (IH (before ++ [a])). rewrite map_app in IH. exact IH.
-Qed.
-Lemma picks_within {A} (s : list A) : forall before i others, In (i, others) (picks before s) ->
-  In i s /\ forall j, In j others -> In j (before ++ s).
-Proof.
-  induction s as [| a s IH]; intros before i others; [contradiction |]. intros [E | H].
-  - injection E as <- <-. split; [now left |]. intros j J. apply in_app_or in J. apply in_or_app.
-    destruct J as [J | J]; [now left | right; now right].
-  - destruct (IH _ _ _ H) as [Ii J]. split; [now right |]. intros j Ij. specialize (J j Ij).
-    rewrite <- app_assoc in J. exact J.
-Qed.
-
 Section Ieee_corners.
 Variables prec emin : Z.
 Context {format : Format prec emin}.
@@ -117,7 +101,8 @@ Proof.
   - pose proof (entry_below_corner most m B) as C. pose proof (u_positive prec) as U.
     assert (R : Forall (corner_entry prec emin) (map entry_value nodes)).
     { apply Forall_map. apply Forall_impl with (2 := F). intros a. apply entry_below_corner. }
-    pose proof (size_nonnegative _ R) as R0. pose proof (size_nonnegative [entry_value m] (Forall_cons _ C (Forall_nil _)))
+    pose proof (size_nonnegative _ R) as R0. pose proof (size_nonnegative [entry_value m] (Forall_cons _ C
+      (Forall_nil _)))
       as C0. rewrite sum_cons in C0. unfold sum at 1 in C0. cbn [fold_right] in C0.
     cbn [map] in L. rewrite sum_cons in L. cbn [length] in S.
     assert (Sn : INR n * u <= / 16).
@@ -163,7 +148,8 @@ Proof.
   rewrite sum_cons. unfold sum at 1. cbn [fold_right]. cbn [map] in Size. rewrite sum_cons in Size. lra.
 Qed.
 
-Lemma slack_forward most nodes : Forall (entry_below most) nodes -> forall s, finite s -> dyadic (val s) -> val s <= 1 ->
+Lemma slack_forward most nodes : Forall (entry_below most) nodes -> forall s, finite s -> dyadic (val s) -> val s <=
+  1 ->
   0 <= val s - sum entry_l (map entry_value nodes) ->
   let r := fold_left (fun s n => sub o s (entry_l n)) nodes s in
   finite r /\ val r = val s - sum entry_l (map entry_value nodes).
@@ -244,7 +230,8 @@ Proof.
   assert (FA : Forall (fun b => finite b \/ view b = Plus)
                  (zero o :: map (fun e => absolute o (entry_b e)) nodes)).
   { constructor; [left; apply (zero_value prec emin I) |]. apply Forall_map. apply Forall_impl with (2 := F).
-    intros e [H | H]; [left; apply (absolute_forward prec emin I _ H) |]. right. now rewrite (law_absolute _ _ _ _ I), H. }
+    intros e [H | H]; [left; apply (absolute_forward prec emin I _ H) |]. right. now rewrite (law_absolute _ _ _ _
+      I), H. }
   assert (FM : finite (corner_magnitude o nodes)).
   { assert (G : forall s t, Forall (fun b => finite b \/ view b = Plus) (s :: t) ->
                   finite (greatest o s t) \/ view (greatest o s t) = Plus).
@@ -345,7 +332,8 @@ Theorem best_corner_sound nodes weights : nodes <> [] ->
   map fst weights = map (fun e => node_of_entry (entry_value e)) nodes -> in_space weights ->
   finite (best_corner o nodes) -> mean weights <= val (best_corner o nodes).
 Proof.
-  intros Ne H Sm E W F. rewrite <- (map_map entry_value node_of_entry) in E. destruct nodes as [| a [| b nodes]]; [congruence | |].
+  intros Ne H Sm E W F. rewrite <- (map_map entry_value node_of_entry) in E. destruct nodes as [| a [| b nodes]];
+    [congruence | |].
   { exact (only_node (entry_value a) weights E W). }
   set (all := a :: b :: nodes) in *.
   change (best_corner o all) with (if less o (corner_magnitude o all) (most_safe o) then corner_bound o all
@@ -388,7 +376,8 @@ Proof.
   { intros i' t' j' P J. destruct (picks_within all [] i' t' P) as [Q R]. split; [exact Q | exact (R j' J)]. }
   destruct (best_finite (corner_base o all) (corner_slack o all) (picks [] all) (lowest o)) as (_ & _ & G);
     [| exact FB |].
-  { intros i' t' j' P J. destruct (Inside i' t' j' P J) as [Q R]. apply (corner_forward most all i' j' SM Ne EB Sm' SL Q R). }
+  { intros i' t' j' P J. destruct (Inside i' t' j' P J) as [Q R]. apply (corner_forward most all i' j' SM Ne EB Sm'
+    SL Q R). }
   change ([] : list (model.entry (num := R))) with (map entry_value []) in Ip. rewrite picks_map in Ip.
   apply in_map_iff in Ip. destruct Ip as ([i' t'] & Eq & Ip). cbn [fst snd] in Eq. injection Eq as <- <-.
   apply in_map_iff in Ij. destruct Ij as (j' & <- & Ij). specialize (G i' t' j' Ip Ij).

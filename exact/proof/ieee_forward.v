@@ -130,7 +130,8 @@ Qed.
 (* The greatest of finite values by std::max, whatever it starts from, if it is finite. *)
 Lemma fold_max_finite {A} (f : A -> num) s : forall r, Forall (fun a => finite (f a)) s ->
   let top := fold_left (fun r a => max o r (f a)) s r in
-  finite top -> (finite r \/ view r = Minus) /\ (finite r -> val r <= val top) /\ Forall (fun a => val (f a) <= val top) s.
+  finite top -> (finite r \/ view r = Minus) /\ (finite r -> val r <= val top) /\ Forall (fun a => val (f a) <= val
+    top) s.
 Proof.
   induction s as [| a s IH]; intros r F top T; unfold top in *; cbn [fold_left] in *.
   - split; [now left |]. split; [intros _; apply Rle_refl | constructor].
@@ -138,7 +139,8 @@ Proof.
     destruct (view r) eqn:E.
     + assert (Fr : finite r) by now exists r0. destruct (max_finite prec emin I r (f a) Fr Fa) as [Fm V].
       specialize (L Fm). rewrite V in L. pose proof (Rmax_l (val r) (val (f a))).
-      pose proof (Rmax_r (val r) (val (f a))). split; [now left |]. split; [intros _; lra |]. constructor; [lra | exact G].
+      pose proof (Rmax_r (val r) (val (f a))). split; [now left |]. split; [intros _; lra |]. constructor; [lra |
+        exact G].
     + unfold max in R. rewrite (law_less _ _ _ _ I), E, (view_val _ Fa) in R. simpl in R.
       destruct R as [[q Q] | Q]; congruence.
     + assert (M : max o r (f a) = f a).

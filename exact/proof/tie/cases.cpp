@@ -132,7 +132,8 @@ void duals(std::size_t count)
     }
 }
 
-/// Means of limits that are at least 0; now and then of any numbers. Often two are about as large, or all are subnormal.
+/// Means of limits that are at least 0; now and then of any numbers. Often two are about as large, or all are
+/// subnormal.
 void means(std::size_t count)
 {
     std::vector<double> l, h, c;
@@ -230,6 +231,12 @@ void boxes(std::size_t count)
                 for (auto& row : map.m)
                     row[s] = 0;
         }
+        if (below(32) == 0) // where corners no longer answers
+            for (AffineMap& map : maps)
+                for (auto& row : map.m) {
+                    row[0] = row[1] = row[2] = 0;
+                    row[3] = std::ldexp(sign(), 1020 - static_cast<int>(below(2)));
+                }
         bv.node = node;
         bv.space = {l, h};
         bv.vertex_influences = static_cast<std::uint32_t>(1 + below(12));

@@ -27,8 +27,9 @@ SOURCES = ["toolkit/bounds/weight_space.cpp", "toolkit/bounds/bound_box.cpp", "t
 ROUNDING, (WEIGHTS, BOX, EVALUATE, ORIENTATION, VERTEX, TIME, _) = "toolkit/bounds/rounding.hpp", SOURCES
 MEAN = "toolkit/bounds/greatest_mean.hpp"
 
-# File, what stands there exactly once, and what is put in its place. (Not here, as it changes nothing: without
-# "!(absolute < infinite)" in dual_bound an infinite sum makes the error term infinite, or no number, all the same.)
+# File, what stands there exactly once, and what is put in its place. (Not here, as they change nothing: without
+# "!(absolute < infinite)" in dual_bound an infinite sum makes the error term infinite, or no number, all the same; in
+# greatest_between least + path is the less of two only where both are below the greatest end.)
 MUTATIONS = [
     (ROUNDING, "succ(10 * unit_roundoff", "succ(9 * unit_roundoff"),
     (ROUNDING, "largest_magnitude + 16 *", "largest_magnitude + 15 *"),
@@ -98,7 +99,6 @@ MUTATIONS = [
     (TIME, "return succ(std::min(parabola", "return (std::min(parabola"),
     (TIME, "return succ(most);", "return most;"),
     (TIME, "most - least >= 4 * bump", "most - least > 4 * bump"),
-    (TIME, "(first + last + path) / 2, least + path", "(first + last + path) / 2, most + path"),
     (EVALUATE, "((m[r][0] * x + m[r][1] * y) + m[r][2] * z) + m[r][3]",
      "(m[r][0] * x + (m[r][1] * y + m[r][2] * z)) + m[r][3]"),
     (EVALUATE, "for (std::size_t i = 0; i < row.node.size(); ++i) {\n        const auto& m",
