@@ -1,8 +1,6 @@
 (* SPDX-License-Identifier: GPL-3.0-or-later *)
 (* best_corner of toolkit/bounds/bound_box.cpp: the greatest of the n(n - 1) corners of section 5.2.2 with its error
-  term
-   is at least every mean of W'. With rounding and underflow; of numbers near overflow it is not true
-   (README.md), so there is no theorem over IEEE values. *)
+   term is at least every mean of W'. With rounding and underflow; overflow is dealt with in ieee_corners.v. *)
 From Coq Require Import Reals Lra Lia ZArith List Permutation.
 From Flocq Require Import Core.
 From CinchProof Require Import duality rounding successor approximation model real_model dual_bound.
@@ -45,6 +43,22 @@ Proof.
     + apply Permutation_cons_inv with a. apply Permutation_trans with (c :: a :: others); [apply perm_swap |].
       apply Permutation_trans with (2 := Permutation_sym P). constructor.
       apply Permutation_trans with (2 := Q). now constructor.
+Qed.
+
+Lemma picks_map {A B} (f : A -> B) s : forall before,
+  picks (map f before) (map f s) = map (fun p => (f (fst p), map f (snd p))) (picks before s).
+Proof.
+  induction s as [| a s IH]; intros before; [reflexivity |]. cbn [map picks fst snd]. rewrite map_app. f_equal.
+  specialize (IH (before ++ [a])). rewrite map_app in IH. exact IH.
+Qed.
+Lemma picks_within {A} (s : list A) : forall before i others, In (i, others) (picks before s) ->
+  In i s /\ forall j, In j others -> In j (before ++ s).
+Proof.
+  induction s as [| a s IH]; intros before i others; [contradiction |]. intros [E | H].
+  - injection E as <- <-. split; [now left |]. intros j J. apply in_app_or in J. apply in_or_app.
+    destruct J as [J | J]; [now left | right; now right].
+  - destruct (IH _ _ _ H) as [Ii J]. split; [now right |]. intros j Ij. specialize (J j Ij).
+    rewrite <- app_assoc in J. exact J.
 Qed.
 
 Section Corners.
@@ -302,43 +316,58 @@ Proof.
     apply Rle_trans with (/ 2 * (INR n + 2) * 1.1); [apply Rmult_le_compat_l; lra | lra].
 Qed.
 
+(* With its error term the computed corner of the two greatest is at least every mean of W'. *)
+Lemma some_corner nodes weights : (2 <= length nodes)%nat ->
+  Forall corner_entry nodes -> INR (length nodes + 8) * u <= / 16 ->
+  map fst weights = map node_of_entry nodes -> in_space weights ->
+  exists i others j, In (i, others) (picks [] nodes) /\ In j others /\
+    mean weights <= corner_value real_ops (corner_base real_ops nodes) (corner_slack real_ops nodes) i j +
+                    corner_error real_ops nodes.
+Proof.
+  intros Len F Sm E W. destruct nodes as [| a [| b nodes]]; [simpl in Len; lia | simpl in Len; lia |].
+  set (all := a :: b :: nodes) in *.
+  assert (SL : sum entry_l all <= 1).
+  { destruct W as [Win Wsum]. rewrite <- Wsum.
+    assert (Q : sum entry_l all = sum (fun p => low (fst p)) weights).
+    { transitivity (sum low (map node_of_entry all)); [now rewrite sum_map |]. rewrite <- E. now rewrite sum_map. }
+    rewrite Q. apply sum_le. apply Forall_impl with (2 := Win). intros p [P _]. exact P. }
+  destruct (two_greatest_exist entry_b a b nodes) as (i & j & t & P & G & H). fold all in P.
+  destruct (picks_in all [] i (j :: t) (Permutation_sym P)) as (others & Io & Po).
+  assert (Jo : In j others) by (apply (Permutation_in j (Permutation_sym Po)); now left).
+  assert (Ii : In i all) by (apply (Permutation_in i (Permutation_sym P)); now left).
+  assert (Ij : In j all) by (apply (Permutation_in j (Permutation_sym P)); right; now left).
+  pose proof (corner_approximates all i j _ Len F SL Ii Ij (magnitude_ge all)) as A. cbv zeta in A.
+  pose proof (corner_error_covers all Len Sm) as C.
+  assert (M : mean weights <= sum (fun m => entry_l m * entry_b m) all + (entry_h i - entry_l i) * entry_b i +
+                              (1 - sum entry_l all - (entry_h i - entry_l i)) * entry_b j).
+  { apply (corners_bound (node_of_entry i) (node_of_entry j) (map node_of_entry t)).
+    - split; [exact G |]. apply Forall_map. exact H.
+    - rewrite E. apply (Permutation_map node_of_entry) in P. exact P.
+    - exact W.
+    - rewrite E. unfold corner. rewrite !sum_map. apply Rle_refl. }
+  exists i, others, j. split; [exact Io |]. split; [exact Jo |]. apply Rabs_le_inv in A. lra.
+Qed.
+
+(* One node has the weight 1. *)
+Lemma only_node e weights : map fst weights = [node_of_entry e] -> in_space weights -> mean weights <= entry_b e.
+Proof.
+  intros E W. destruct weights as [| [n w] [| p weights]]; try discriminate. injection E as E. destruct W as [_ W].
+  unfold mean, sum in *. simpl in *. subst n. simpl. replace w with 1 by lra. lra.
+Qed.
+
 Theorem best_corner_at_least_mean nodes weights :
   Forall corner_entry nodes -> nodes <> [] -> INR (length nodes + 8) * u <= / 16 ->
   map fst weights = map node_of_entry nodes -> in_space weights ->
-  mean weights <= best_corner real_ops nodes.
+  mean weights <= match nodes with [n] => entry_b n | _ => corner_bound real_ops nodes end.
 Proof.
-  intros F Ne Sm E W. destruct nodes as [| a [| b nodes]]; [congruence | |].
-  - (* one node has the weight 1 *)
-    destruct weights as [| [n w] [| p weights]]; try discriminate. injection E as E. destruct W as [_ W].
-    unfold mean, sum in *. simpl in *. subst n. simpl. replace w with 1 by lra. lra.
-  - set (all := a :: b :: nodes) in *.
-    assert (SL : sum entry_l all <= 1).
-    { destruct W as [Win Wsum]. rewrite <- Wsum.
-      assert (Q : sum entry_l all = sum (fun p => low (fst p)) weights).
-      { transitivity (sum low (map node_of_entry all)); [now rewrite sum_map |]. rewrite <- E. now rewrite sum_map. }
-      rewrite Q. apply sum_le. apply Forall_impl with (2 := Win). intros p [P _]. exact P. }
-    destruct (two_greatest_exist entry_b a b nodes) as (i & j & t & P & G & H). fold all in P.
-    destruct (picks_in all [] i (j :: t) (Permutation_sym P)) as (others & Io & Po).
-    assert (Jo : In j others) by (apply (Permutation_in j (Permutation_sym Po)); now left).
-    assert (Ii : In i all) by (apply (Permutation_in i (Permutation_sym P)); now left).
-    assert (Ij : In j all) by (apply (Permutation_in j (Permutation_sym P)); right; now left).
-    assert (Len : (2 <= length all)%nat) by (unfold all; simpl; lia).
-    pose proof (corner_approximates all i j _ Len F SL Ii Ij (magnitude_ge all)) as A. cbv zeta in A.
-    pose proof (corner_error_covers all Len Sm) as C.
-    pose proof (best_ge (corner_base real_ops all) (corner_slack real_ops all) (picks [] all) (lowest real_ops) i
-      others j
-                  Io Jo) as B. fold (best_of_corners real_ops all) in B.
-    assert (M : mean weights <= sum (fun m => entry_l m * entry_b m) all + (entry_h i - entry_l i) * entry_b i +
-                                (1 - sum entry_l all - (entry_h i - entry_l i)) * entry_b j).
-    { apply (corners_bound (node_of_entry i) (node_of_entry j) (map node_of_entry t)).
-      - split; [exact G |]. apply Forall_map. exact H.
-      - rewrite E. apply (Permutation_map node_of_entry) in P. exact P.
-      - exact W.
-      - rewrite E. unfold corner. rewrite !sum_map. apply Rle_refl. }
-    change (best_corner real_ops all) with
-      (model.succ real_ops (add real_ops (best_of_corners real_ops all) (corner_error real_ops all))).
-    rewrite (model_succ prec emin). cbn [add real_model.real_ops].
-    pose proof (below_succ_fl prec emin (best_of_corners real_ops all + corner_error real_ops all)) as S1.
-    apply Rabs_le_inv in A. lra.
+  intros F Ne Sm E W. destruct nodes as [| a [| b nodes]]; [congruence | now apply only_node |].
+  set (all := a :: b :: nodes) in *.
+  destruct (some_corner all weights ltac:(unfold all; simpl; lia) F Sm E W) as (i & others & j & Io & Jo & M).
+  pose proof (best_ge (corner_base real_ops all) (corner_slack real_ops all) (picks [] all) (lowest real_ops) i
+    others j Io Jo) as B. fold (best_of_corners real_ops all) in B.
+  change (mean weights <= model.succ real_ops (add real_ops (best_of_corners real_ops all) (corner_error real_ops
+    all))).
+  rewrite (model_succ prec emin). cbn [add real_model.real_ops].
+  pose proof (below_succ_fl prec emin (best_of_corners real_ops all + corner_error real_ops all)) as S1. lra.
 Qed.
 End Corners.

@@ -46,7 +46,7 @@ Record ieee {num : Type} (o : ops num) (view : num -> value) : Prop := {
   law_number x r : view x = Finite r -> number r;
   law_constant m e : (Z.abs m < 2 ^ prec)%Z -> (emin <= e <= 0)%Z ->
     view (constant o m e) = Finite (IZR m * bpow radix2 e);
-  law_power e : (0 <= e <= - emin - prec)%Z -> view (constant o 1 e) = Finite (1 * bpow radix2 e);
+  law_power e : (0 <= e <= 2 - emin - prec)%Z -> view (constant o 1 e) = Finite (1 * bpow radix2 e);
   law_infinity : view (infinity o) = Plus;
   (* Finite numbers give the rounded result, unless that is beyond every finite number. *)
   law_add x y a b : view x = Finite a -> view y = Finite b ->
@@ -60,6 +60,9 @@ Record ieee {num : Type} (o : ops num) (view : num -> value) : Prop := {
   law_mul x y a b : view x = Finite a -> view y = Finite b ->
     view (mul o x y) = Finite (fl (a * b)) \/
     (forall z c, view z = Finite c -> Rabs c < Rabs (fl (a * b)));
+  law_divide x y a b : view x = Finite a -> view y = Finite b -> b <> 0 ->
+    view (divide o x y) = Finite (fl (a / b)) \/
+    (forall z c, view z = Finite c -> Rabs c < Rabs (fl (a / b)));
   (* A finite result has finite operands, and has not overflowed. *)
   law_add_finite x y r : view (add o x y) = Finite r ->
     exists a b, view x = Finite a /\ view y = Finite b /\ r = fl (a + b);

@@ -1,12 +1,10 @@
 (* SPDX-License-Identifier: GPL-3.0-or-later *)
 (* bound_box of toolkit/bounds/bound_box.cpp over IEEE values: a finite support is at least every vertex of the BV,
-  exact
-   and as evaluate_vertex computes it, along every axis and against it, for convex, eq12 and limited. (For corners it is
-   not true of numbers near overflow; README.md.) *)
+   exact and as evaluate_vertex computes it, along every axis and against it, by any of its methods. *)
 From Coq Require Import Reals Lra Lia ZArith List Bool Permutation.
 From Flocq Require Import Core.
 From CinchProof Require Import duality geometry rounding successor model real_model dual_bound extremum evaluation
-  chain ieee ieee_dual ieee_extremum.
+  chain ieee ieee_forward ieee_dual ieee_corners ieee_extremum.
 Import ListNotations.
 Open Scope R_scope.
 
@@ -26,28 +24,6 @@ Notation influence := (influence (num := num)).
 
 Definition influence_value (n : influence) : model.influence (num := R) :=
   Influence (val (influence_l n)) (val (influence_h n)) (map_value (influence_map n)).
-
-(* The least of the greatest: extrema that are finite or +infinity, a finite greatest. *)
-Lemma greatest_finite others : forall b0,
-  Forall (fun b => finite b \/ view b = Plus) (b0 :: others) -> finite (greatest o b0 others) ->
-  Forall (fun b => finite b /\ val b <= val (greatest o b0 others)) (b0 :: others).
-Proof.
-  unfold greatest. induction others as [| b1 others IH]; intros b0 F G; cbn [fold_left] in *.
-  - constructor; [| constructor]. split; [exact G | apply Rle_refl].
-  - inversion F as [| ? ? F0 F' ]; subst. inversion F' as [| ? ? F1 F2]; subst.
-    assert (M : finite (max o b0 b1) \/ view (max o b0 b1) = Plus) by (unfold max; destruct less; assumption).
-    specialize (IH (max o b0 b1) (Forall_cons _ M F2) G). inversion IH as [| ? ? [FM LM] R]; subst.
-    assert (H : finite b0 /\ finite b1).
-    { unfold max in FM. rewrite (law_less _ _ _ _ I) in FM.
-      destruct F0 as [[r0 E0] | E0], F1 as [[r1 E1] | E1]; rewrite E0, E1 in FM; simpl in FM.
-      - split; [now exists r0 | now exists r1].
-      - destruct FM as [r Er]. rewrite E1 in Er. discriminate.
-      - destruct FM as [r Er]. rewrite E0 in Er. discriminate.
-      - destruct FM as [r Er]. rewrite E0 in Er. discriminate. }
-    destruct H as [H0 H1]. destruct (max_finite prec emin I b0 b1 H0 H1) as [_ V]. rewrite V in LM.
-    pose proof (Rmax_l (val b0) (val b1)). pose proof (Rmax_r (val b0) (val b1)).
-    constructor; [split; [exact H0 | lra] |]. constructor; [split; [exact H1 | lra] | exact R].
-Qed.
 
 (* The largest magnitude. *)
 Lemma largest_finite axis b maps : good_box (view := view) b -> finite (largest_magnitude o axis b maps) ->
@@ -112,21 +88,48 @@ Lemma greatest_sound b0 others : map extremum_at nodes = b0 :: others ->
 Proof.
   intros E F G.
   assert (F' : Forall (fun b => finite b \/ view b = Plus) (b0 :: others)) by (rewrite <- E; now apply Forall_map).
-  pose proof (greatest_finite others b0 F' G) as A. rewrite <- E in A. rewrite Forall_map in A.
+  pose proof (greatest_finite prec emin I others b0 F' G) as A. rewrite <- E in A. rewrite Forall_map in A.
   split; [apply Forall_impl with (2 := A); now intros n [H _] |].
   intros weights (M & W & P). apply (convex_bound _ _ W). apply Forall_map. apply Forall_forall. intros p In.
   cbn [fst snd node_at extremum]. rewrite Forall_forall in A, P. split; [now apply P |].
   apply A. rewrite <- M. now apply in_map.
 Qed.
 
-Theorem methods_sound how : how <> corners -> IZR (length_of nodes) * u <= / 8 ->
+(* What corners needs besides: weight intervals in units of u. *)
+Definition fit_for (how : method (num := num)) : Prop := how = corners ->
+  Forall (fun n => unit_interval prec (view := view) (influence_l n) (influence_h n)) nodes /\
+  INR (length nodes + 8) * u <= / 16.
+
+Lemma corners_sound : fit_for corners -> nodes <> [] ->
+  Forall (fun n => finite (extremum_at n) \/ view (extremum_at n) = Plus) nodes ->
+  sound (best_corner o (entries nodes (map extremum_at nodes))).
+Proof.
+  intros Fit Ne E F. destruct (Fit eq_refl) as [U S]. rewrite entries_map in *.
+  set (all := map (fun n => Entry (influence_l n) (influence_h n) (extremum_at n)) nodes) in *.
+  assert (H : forall weights, map fst weights = map (fun e => node_of_entry (entry_value (view := view) e)) all ->
+    in_space weights -> mean weights <= val (best_corner o all)).
+  { intros weights M W. apply (best_corner_sound prec emin I); trivial.
+    - unfold all. intros Z. now apply map_eq_nil in Z.
+    - unfold all. apply Forall_map. rewrite Forall_forall in U, E |- *. intros n In. split; [exact (U n In) | exact (E n
+        In)].
+    - unfold all. now rewrite map_length. }
+  split.
+  - apply (best_corner_finite prec emin I) in F.
+    + unfold all in F. rewrite Forall_map in F. exact F.
+    + unfold all. intros Z. now apply map_eq_nil in Z.
+    + unfold all. apply Forall_map. exact E.
+  - intros weights (M & W & _). apply H; [| exact W]. unfold all. rewrite !map_map. cbn [fst].
+    rewrite <- (map_map fst node_at), M. reflexivity.
+Qed.
+
+Theorem methods_sound how : fit_for how -> IZR (length_of nodes) * u <= / 8 ->
   Forall (fun n => finite (extremum_at n) \/ view (extremum_at n) = Plus) nodes -> nodes <> [] ->
   sound (box_free_bound o how nodes (map extremum_at nodes)).
 Proof.
   intros How N F Ne. unfold box_free_bound. destruct (map extremum_at nodes) as [| b0 others] eqn:E.
   - apply map_eq_nil in E. congruence.
   - pose proof (greatest_sound b0 others E F) as G. rewrite <- E.
-    destruct how as [| | lambda |]; [exact G | | | congruence].
+    destruct how as [| | lambda |]; [exact G | | | now apply corners_sound].
     + apply min_sound; [exact G | now apply dual_sound].
     + apply min_sound; [apply min_sound; [exact G | now apply dual_sound] | now apply dual_sound].
 Qed.
@@ -205,7 +208,8 @@ Proof.
 Qed.
 
 Theorem bound_box_sound how along axis b k nodes x weights row :
-  how <> corners -> is_axis axis -> good_box (view := view) b -> few_influences k -> IZR (length_of nodes) * u <= / 8 ->
+  fit_for nodes how -> is_axis axis -> good_box (view := view) b -> few_influences k -> IZR (length_of nodes) * u <=
+    / 8 ->
   vertex_of_bv b k nodes x weights row ->
   finite (bound_box o how along axis b (Z.of_nat k) nodes) ->
   let support := val (bound_box o how along axis b (Z.of_nat k) nodes) in

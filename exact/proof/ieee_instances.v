@@ -27,7 +27,8 @@ Definition binary_ops : ops binary := {|
   mul := Bmult mode_NE;
   absolute := Babs;
   less := Bltb;
-  less_equal := Bleb
+  less_equal := Bleb;
+  divide := Bdiv mode_NE
 |}.
 
 Lemma view_finite x : is_finite x = true -> view x = Finite (B2R x).
@@ -101,6 +102,18 @@ Proof.
   revert H. case Rlt_bool_spec; intros L H.
   - left. destruct H as (V & F & _). rewrite FX, FY in F. rewrite view_finite by exact F. now rewrite V.
   - right. simpl in H. apply infinity_of_spec in H. split; [intros z; now apply beyond |]. rewrite H. reflexivity.
+Qed.
+
+Lemma divide_law x y a b : view x = Finite a -> view y = Finite b -> b <> 0 ->
+  view (Bdiv mode_NE x y) = Finite (fl (a / b)) \/
+  (forall z c, view z = Finite c -> Rabs c < Rabs (fl (a / b))).
+Proof.
+  intros X Y N. apply finite_of_view in X, Y. destruct X as [FX <-]. destruct Y as [FY <-].
+  pose proof (Bdiv_correct prec emax _ _ mode_NE x y N) as H.
+  change (round radix2 (SpecFloat.fexp prec emax) (round_mode mode_NE)) with fl in H.
+  revert H. case Rlt_bool_spec; intros L H.
+  - left. destruct H as (V & F & _). rewrite FX in F. rewrite view_finite by exact F. now rewrite V.
+  - right. intros z. now apply beyond.
 Qed.
 
 Lemma add_finite x y r : view (Bplus mode_NE x y) = Finite r ->
@@ -222,6 +235,7 @@ Proof.
   - exact add_law.
   - exact sub_law.
   - intros x y a b X Y. destruct (mul_law x y a b X Y) as [H | [H _]]; [now left | now right].
+  - exact divide_law.
   - exact add_finite.
   - exact sub_finite.
   - exact mul_finite.

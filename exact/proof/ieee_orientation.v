@@ -3,8 +3,8 @@
    overflowed, so that it decides as the exact determinant does. *)
 From Coq Require Import Reals Lra Lia ZArith List Bool.
 From Flocq Require Import Core.
-From CinchProof Require Import rounding approximation model real_model extremum ieee ieee_extremum ieee_bound_box
-  orientation.
+From CinchProof Require Import rounding approximation model real_model extremum ieee ieee_forward ieee_extremum
+  ieee_bound_box orientation.
 Import ListNotations.
 Open Scope R_scope.
 
@@ -33,7 +33,7 @@ Qed.
 Lemma not_beyond k r : (0 <= k <= top)%Z -> Rabs r <= bpow radix2 k ->
   ~ (forall y c, view y = Finite c -> Rabs c < Rabs r).
 Proof.
-  intros K B H. specialize (H _ _ (law_power _ _ _ _ I k K)).
+  intros K B H. specialize (H _ _ (law_power _ _ _ _ I k ltac:(unfold top in K; lia))).
   rewrite Rmult_1_l, Rabs_pos_eq in H by apply bpow_ge_0. lra.
 Qed.
 

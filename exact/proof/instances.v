@@ -3,7 +3,7 @@
 From Coq Require Import Reals Lra Lia ZArith List.
 From Flocq Require Import Core BinarySingleNaN.
 From CinchProof Require Import duality geometry rounding successor model real_model dual_bound extremum evaluation chain
-  ieee ieee_instances ieee_dual ieee_extremum ieee_bound_box vertex_bound.
+  ieee ieee_instances ieee_dual ieee_corners ieee_extremum ieee_bound_box vertex_bound greatest_mean greatest_between.
 Import ListNotations.
 Open Scope R_scope.
 
@@ -45,7 +45,8 @@ Proof. intros N F. exact (proj2 (proj2 (dual_bound_finite 53 (-1074) binary64_ie
 
 (* bound_box as it runs. *)
 Theorem bound_box_double how along axis (b : box (num := double)) k nodes x weights row :
-  how <> corners -> is_axis axis -> good_box (view := view64) b -> (1 <= Z.of_nat k <= 1048576)%Z ->
+  fit_for 53 (view := view64) nodes how -> is_axis axis -> good_box (view := view64) b -> (1 <= Z.of_nat k <=
+    1048576)%Z ->
   (length_of nodes <= 2 ^ 50)%Z -> vertex_of_bv (view := view64) b k nodes x weights row ->
   finite (view := view64) (bound_box binary64_ops how along axis b (Z.of_nat k) nodes) ->
   let support := val (view := view64) (bound_box binary64_ops how along axis b (Z.of_nat k) nodes) in
@@ -72,3 +73,7 @@ Theorem bound_vertex_double along axis (x : triple double) nodes :
   (all_finite (view := view64) (evaluate_vertex binary64_ops x nodes) ->
    side along * along_axis axis (triple_value (view := view64) (evaluate_vertex binary64_ops x nodes)) <= support).
 Proof. intros A K W F. apply (bound_vertex_sound 53 (-1074) binary64_ieee); trivial. now apply few_in_double. Qed.
+
+(* Means over W', and bounds over an interval of time, as they run. *)
+Definition greatest_mean_double := greatest_mean_sound 53 (-1074) binary64_ieee.
+Definition greatest_between_double := greatest_between_sound 53 (-1074) binary64_ieee.

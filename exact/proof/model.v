@@ -1,5 +1,5 @@
 (* SPDX-License-Identifier: GPL-3.0-or-later *)
-(* The functions of toolkit/bounds as they compute, operation by operation, over any arithmetic. The theorems are about
+(* Functions of toolkit/ as they compute, operation by operation, over any arithmetic. The theorems are about
    these very definitions; extracted, they are compared with the compiled functions bit by bit (tie/). *)
 From Coq Require Import ZArith List Bool.
 Import ListNotations.
@@ -16,11 +16,12 @@ Record ops (num : Type) := Ops {
   mul : num -> num -> num;
   absolute : num -> num;
   less : num -> num -> bool;
-  less_equal : num -> num -> bool
+  less_equal : num -> num -> bool;
+  divide : num -> num -> num
 }.
 Arguments precision {num}. Arguments least {num}. Arguments constant {num}. Arguments infinity {num}.
 Arguments add {num}. Arguments sub {num}. Arguments mul {num}. Arguments absolute {num}.
-Arguments less {num}. Arguments less_equal {num}.
+Arguments less {num}. Arguments less_equal {num}. Arguments divide {num}.
 
 Section Model.
 Context {num : Type}.
@@ -95,11 +96,55 @@ Definition corner_error (nodes : list entry) : num :=
   let n := constant o (length_of nodes) 0 in
   succ (add o (mul o (mul o (mul o (constant o 4 0) (add o n (constant o 8 0))) unit_roundoff) (corner_magnitude nodes))
               (mul o (mul o (constant o 2 0) n) (smallest_times 1))).
+(* 2^1020 in double: a sixteenth of the power of two above every finite number. *)
+Definition most_safe : num := constant o 1 (- least o - precision o - 1).
+Definition corner_bound (nodes : list entry) : num := succ (add o (best_of_corners nodes) (corner_error nodes)).
 Definition best_corner (nodes : list entry) : num :=
   match nodes with
   | [n] => entry_b n
-  | _ => succ (add o (best_of_corners nodes) (corner_error nodes))
+  | _ => if less o (corner_magnitude nodes) most_safe then corner_bound nodes else infinity o
   end.
+
+(* greatest_mean.hpp: b of an entry is its c, at least 0. *)
+Definition mean_step (state : num * num) (n : entry) : num * num :=
+  let (most, second) := state in (max most (entry_b n), max second (min (entry_b n) most)).
+Definition mean_term (second : num) (n : entry) : num :=
+  let above := sub o (entry_b n) second in
+  add o (mul o (entry_l n) above) (mul o (sub o (entry_h n) (entry_l n)) (max above zero)).
+Definition mean_sum (second : num) (nodes : list entry) : num :=
+  fold_left (fun s n => add o s (mean_term second n)) nodes second.
+Definition mean_error (nodes : Z) (most : num) : num :=
+  add o (mul o (mul o (add o (constant o nodes 0) (constant o 8 0)) (constant o 1 (2 - precision o))) most)
+        (smallest_times (2 * nodes)).
+Definition greatest_mean (nodes : list entry) : num :=
+  let (most, second) := fold_left mean_step nodes (zero, zero) in
+  if negb (less o most (infinity o)) || (less_equal o most second && less_equal o second most) then most
+  else min most (add o (mean_sum second nodes) (mean_error (length_of nodes) most)).
+
+(* time/interval_refit.cpp, greatest_between(). To halve and to divide by 16 is to multiply. *)
+Definition infinite_unless (x : num) : num := if less o x (infinity o) then x else infinity o.
+Definition is_number (x : num) : bool := less_equal o x x.
+Definition number_or_infinity (x : num) : num := if is_number x then x else infinity o.
+Definition half_of (x : num) : num := mul o x (constant o 1 (-1)).
+Definition between_error (first last rise : num) (underflows : Z) : num :=
+  add o (mul o (constant o 1 (4 - precision o)) (add o (add o (absolute o first) (absolute o last)) rise))
+        (smallest_times underflows).
+Definition parabola_value (first last bump : num) : num :=
+  let d := sub o (max first last) (min first last) in
+  add o (add o (half_of (add o first last)) bump) (mul o d (mul o (divide o d bump) (constant o 1 (-4)))).
+Definition parabola_top (first last bump : num) : num :=
+  let top := max (max first last) (add o (parabola_value first last bump) (between_error first last bump 4)) in
+  if less o bump most_safe then infinite_unless top else infinity o.
+Definition lipschitz_top (first last path : num) : num :=
+  let way := min (half_of (add o (add o first last) path)) (add o (min first last) path) in
+  infinite_unless (add o way (between_error first last path 1)).
+Definition greatest_between (first last bump path : num) : num :=
+  let bump := number_or_infinity bump in let path := number_or_infinity path in
+  let most := max first last in let least := min first last in
+  if less o most most_safe && less o (sub o zero most_safe) least && is_number first && is_number last then
+    if less_equal o bump zero || less_equal o (mul o (constant o 4 0) bump) (sub o most least) then succ most
+    else succ (min (parabola_top first last bump) (max most (lipschitz_top first last path)))
+  else infinity o.
 
 (* deform: an affine map by rows, a box by centre and half extents, an axis of components -1, 0 and 1. *)
 Record triple (A : Type) := Triple { at0 : A; at1 : A; at2 : A }.

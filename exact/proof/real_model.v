@@ -23,7 +23,8 @@ Definition real_ops : ops R := {|
   mul := fun x y => fl (x * y);
   absolute := Rabs;
   less := fun x y => Rlt_bool x y;
-  less_equal := fun x y => Rle_bool x y
+  less_equal := fun x y => Rle_bool x y;
+  divide := fun x y => fl (x / y)
 |}.
 
 Lemma model_zero : zero real_ops = 0.

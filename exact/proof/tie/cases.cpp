@@ -11,9 +11,11 @@
 #include "cinch/deform.hpp"
 #include "toolkit/bounds/bound_box.hpp"
 #include "toolkit/bounds/bound_vertex.hpp"
+#include "toolkit/bounds/greatest_mean.hpp"
 #include "toolkit/bounds/rounding.hpp"
 #include "toolkit/bounds/weight_space.hpp"
 #include "toolkit/collide/orientation.hpp"
+#include "toolkit/time/interval_refit.hpp"
 
 namespace {
 
@@ -130,6 +132,63 @@ void duals(std::size_t count)
     }
 }
 
+/// Means of limits that are at least 0; now and then of any numbers. Often two are about as large, or all are
+/// subnormal.
+void means(std::size_t count)
+{
+    std::vector<double> l, h, c;
+    std::vector<std::uint32_t> node;
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t n = 1 + below(below(16) ? 6 : 40);
+        intervals(l, h, n);
+        c.resize(n);
+        node.resize(n);
+        const Kind kind = any_kind();
+        const bool any = below(16) == 0;
+        for (std::size_t j = 0; j < n; ++j) {
+            c[j] = any ? number(kind) : std::abs(number(kind));
+            if (below(8) == 0)
+                c[j] = std::ldexp(static_cast<double>(below(8)), -1074);
+            node[j] = static_cast<std::uint32_t>(j);
+        }
+        if (below(4) == 0) // sums in the order of nodes are of few bits
+            std::fill(c.begin(), c.begin() + static_cast<std::ptrdiff_t>(below(n)), c[0]);
+        RestBv bv;
+        bv.node = node;
+        bv.space = {l, h};
+        std::printf("greatest_mean %zu", n);
+        for (std::size_t j = 0; j < n; ++j) {
+            put(l[j]);
+            put(h[j]);
+            put(c[j]);
+        }
+        put(greatest_mean(bv, [&](std::size_t j) { return c[j]; }));
+        std::puts("");
+    }
+}
+
+/// Ends, bumps and paths of one size, or of four; about 4 bump = last - first, and about 2^1020.
+void intervals_of_time(std::size_t count)
+{
+    for (std::size_t i = 0; i < count; ++i) {
+        const Kind kind = any_kind();
+        const bool mixed = below(8) == 0;
+        auto some = [&] { return number(mixed ? any_kind() : kind); };
+        const double first = some(), last = below(8) ? some() : first;
+        double bump = below(4) ? std::abs(some()) : some(), path = below(4) ? std::abs(some()) : some();
+        if (below(4) == 0) { // where the parabola's top is at an end
+            bump = std::abs(last - first) / 4;
+            if (below(2))
+                bump *= 1 + (static_cast<double>(below(9)) - 4) * unit_roundoff;
+        }
+        if (below(4) == 0)
+            path = infinite;
+        else if (below(4) == 0)
+            bump = infinite;
+        line("greatest_between", first, last, bump, path, greatest_between(first, last, bump, path));
+    }
+}
+
 std::vector<AffineMap> some_maps(std::size_t n, Kind kind)
 {
     std::vector<AffineMap> maps(n);
@@ -172,6 +231,12 @@ void boxes(std::size_t count)
                 for (auto& row : map.m)
                     row[s] = 0;
         }
+        if (below(32) == 0) // where corners no longer answers
+            for (AffineMap& map : maps)
+                for (auto& row : map.m) {
+                    row[0] = row[1] = row[2] = 0;
+                    row[3] = std::ldexp(sign(), 1020 - static_cast<int>(below(2)));
+                }
         bv.node = node;
         bv.space = {l, h};
         bv.vertex_influences = static_cast<std::uint32_t>(1 + below(12));
@@ -320,6 +385,8 @@ int main(int argc, char** argv)
     const std::size_t count = std::strtoull(argv[2], nullptr, 10);
     errors(count);
     duals(count);
+    means(count);
+    intervals_of_time(count);
     boxes((count + 1) / 2); // two sides each
     vertices(count);
     signs(4 * count); // each is soon done, and those near the filter's limits are few

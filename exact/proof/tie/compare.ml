@@ -17,7 +17,8 @@ let machine =
       (fun m e -> ldexp (float_of_int (int_of_z m)) (int_of_z e))
       infinity ( +. ) ( -. ) ( *. ) abs_float
       (fun (x : float) y -> x < y)
-      (fun (x : float) y -> x <= y);
+      (fun (x : float) y -> x <= y)
+      ( /. );
     read = (fun s -> Int64.float_of_bits (Int64.of_string ("0x" ^ s)));
     same = (fun x y -> Int64.bits_of_float x = Int64.bits_of_float y || (x <> x && y <> y));
     print = (fun x -> Printf.sprintf "%016Lx" (Int64.bits_of_float x)) }
@@ -88,6 +89,14 @@ let results a words =
     let nodes = many n (fun () ->
       let entry_l = num () in let entry_h = num () in { entry_l; entry_h; entry_b = num () }) in
     [ (dual_bound a.ops lambda nodes, num ()) ]
+  | "greatest_mean" ->
+    let n = int () in
+    let nodes = many n (fun () ->
+      let entry_l = num () in let entry_h = num () in { entry_l; entry_h; entry_b = num () }) in
+    [ (greatest_mean a.ops nodes, num ()) ]
+  | "greatest_between" ->
+    let first = num () in let last = num () in let bump = num () in let path = num () in
+    [ (greatest_between a.ops first last bump path, num ()) ]
   | "bound_box" ->
     let how = int () in
     let along = int () = 0 in
@@ -155,8 +164,8 @@ let () =
      done
    with End_of_file -> ());
   let functions = [ "succ"; "succ32"; "smallest_times32"; "extremum_error"; "evaluation_error"; "sum_error";
-                    "second_largest"; "dual_bound"; "bound_box"; "evaluate_vertex";
-                    "bound_vertex"; "filter3"; "filter2" ] in
+                    "second_largest"; "dual_bound"; "greatest_mean"; "greatest_between"; "bound_box";
+                    "evaluate_vertex"; "bound_vertex"; "filter3"; "filter2" ] in
   let short = List.filter (fun name ->
     let n, s = try Hashtbl.find seen name with Not_found -> (0, 0) in
     Printf.printf "%-18s %7d cases, %6d of them in Flocq's arithmetic\n" name n s;

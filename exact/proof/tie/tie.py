@@ -22,11 +22,14 @@ import time
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[2]
 SOURCES = ["toolkit/bounds/weight_space.cpp", "toolkit/bounds/bound_box.cpp", "toolkit/deform/evaluate.cpp",
-           "toolkit/collide/orientation.cpp", "toolkit/bounds/bound_vertex.cpp", "exact/proof/tie/cases.cpp"]
-ROUNDING, (WEIGHTS, BOX, EVALUATE, ORIENTATION, VERTEX, _) = "toolkit/bounds/rounding.hpp", SOURCES
+           "toolkit/collide/orientation.cpp", "toolkit/bounds/bound_vertex.cpp", "toolkit/time/interval_refit.cpp",
+           "exact/proof/tie/cases.cpp"]
+ROUNDING, (WEIGHTS, BOX, EVALUATE, ORIENTATION, VERTEX, TIME, _) = "toolkit/bounds/rounding.hpp", SOURCES
+MEAN = "toolkit/bounds/greatest_mean.hpp"
 
-# File, what stands there exactly once, and what is put in its place. (Not here, as it changes nothing: without
-# "!(absolute < infinite)" in dual_bound an infinite sum makes the error term infinite, or no number, all the same.)
+# File, what stands there exactly once, and what is put in its place. (Not here, as they change nothing: without
+# "!(absolute < infinite)" in dual_bound an infinite sum makes the error term infinite, or no number, all the same; in
+# greatest_between least + path is the less of two only where both are below the greatest end.)
 MUTATIONS = [
     (ROUNDING, "succ(10 * unit_roundoff", "succ(9 * unit_roundoff"),
     (ROUNDING, "largest_magnitude + 16 *", "largest_magnitude + 15 *"),
@@ -74,6 +77,28 @@ MUTATIONS = [
     (BOX, "magnitude + 2 * n * smallest", "magnitude + 1 * n * smallest"),
     (BOX, "succ(best + succ(", "(best + succ("),
     (BOX, "raised + (slack - range) * b[j]", "(base + (slack - range) * b[j]) + range * b[i]"),
+    (BOX, "most_safe = 0x1p1020", "most_safe = 0x1p1021"),
+    (BOX, "if (!(magnitude < most_safe))", "if (!(magnitude <= most_safe))"),
+    (MEAN, "+ 8) * 0x1p-51", "+ 7) * 0x1p-51"),
+    (MEAN, "+ 8) * 0x1p-51", "+ 8) * 0x1p-52"),
+    (MEAN, "smallest_times<double>(2 *", "smallest_times<double>(1 *"),
+    (MEAN, "sum += bv.space.l[j] * above + (bv.space.h[j] - bv.space.l[j]) * std::max(above, 0.0);",
+     "sum = (sum + bv.space.l[j] * above) + (bv.space.h[j] - bv.space.l[j]) * std::max(above, 0.0);"),
+    (MEAN, "std::max(second, std::min(c, most))", "std::max(second, c < most ? c : 0)"),
+    (MEAN, "return std::min(most, sum + rounding)", "return sum + rounding"),
+    (TIME, "0x1p-49 * (std::abs(first) + std::abs(last) + bump)",
+     "0x1p-50 * (std::abs(first) + std::abs(last) + bump)"),
+    (TIME, "0x1p-49 * (std::abs(first) + std::abs(last) + path)",
+     "0x1p-50 * (std::abs(first) + std::abs(last) + path)"),
+    (TIME, "+ 4 * smallest_subnormal", "+ 3 * smallest_subnormal"),
+    (TIME, "+ path) + smallest_subnormal)", "+ path))"),
+    (TIME, "d * (d / bump / 16)", "d * d / bump / 16"),
+    (TIME, "d * (d / bump / 16)", "d * (d / bump / 15)"),
+    (TIME, "most_safe = 0x1p1020", "most_safe = 0x1p1021"),
+    (TIME, "parabola = bump < most_safe ?", "parabola = bump < infinite ?"),
+    (TIME, "return succ(std::min(parabola", "return (std::min(parabola"),
+    (TIME, "return succ(most);", "return most;"),
+    (TIME, "most - least >= 4 * bump", "most - least > 4 * bump"),
     (EVALUATE, "((m[r][0] * x + m[r][1] * y) + m[r][2] * z) + m[r][3]",
      "(m[r][0] * x + (m[r][1] * y + m[r][2] * z)) + m[r][3]"),
     (EVALUATE, "for (std::size_t i = 0; i < row.node.size(); ++i) {\n        const auto& m",
