@@ -13,7 +13,8 @@
 namespace cinch {
 namespace {
 
-constexpr double slow_ms = 100; // a frame of a slow backend
+constexpr double slow_ms = 100;        // a frame of a slow backend, the first one apart, which may build
+constexpr std::size_t slow_stride = 4; // which is measured in every fourth frame, once
 
 double median(std::vector<double> all)
 {
@@ -39,6 +40,8 @@ struct Times {
 struct Contestant {
     std::unique_ptr<Backend> backend;
     std::vector<Times> frames;
+    std::vector<double> pairs;       // per frame
+    std::vector<QueryCounts> counts; // if it counts
     Measured out;
     bool slow = false;
 };
@@ -99,6 +102,8 @@ std::vector<Measured> measure(const CollideScene& scene, const std::vector<Backe
             throw_if_interrupted();
             all[k].backend = kinds[k].make(scene);
             all[k].frames.resize(scene.frames());
+            all[k].pairs.resize(scene.frames());
+            all[k].counts.resize(scene.frames());
             all[k].out.backend = kinds[k].name;
             progress.done(k + 1);
         }
@@ -116,14 +121,16 @@ std::vector<Measured> measure(const CollideScene& scene, const std::vector<Backe
             for (std::size_t k = 0; k < kinds.size(); ++k) {
                 Contestant& c = all[k];
                 for (std::size_t f = 0; f < scene.frames() && !(round > 0 && c.slow); ++f) {
+                    if (c.slow && f % slow_stride != 0)
+                        continue;
                     run_frame(c, f, options, pairs);
                     if (round > 0)
                         continue;
-                    c.slow |= c.frames[f].total[0] > slow_ms;
-                    c.out.pairs_of_frame.push_back(static_cast<double>(pairs.size()));
+                    c.slow |= f > 0 && c.frames[f].total[0] > slow_ms;
+                    c.pairs[f] = static_cast<double>(pairs.size());
                     if (const QueryCounts* counts = c.backend->counts()) {
                         c.out.counts = true;
-                        add(c.out.sums, *counts);
+                        c.counts[f] = *counts;
                     }
                     std::sort(pairs.begin(), pairs.end());
                     if (k == 0) {
@@ -142,9 +149,16 @@ std::vector<Measured> measure(const CollideScene& scene, const std::vector<Backe
     std::vector<Measured> results;
     for (Contestant& c : all) {
         std::vector<double> evaluate, update, query;
-        for (const Times& t : c.frames) {
+        std::vector<const Times*> measured;
+        for (std::size_t f = 0; f < c.frames.size(); f += c.slow ? slow_stride : 1) {
+            const Times& t = c.frames[f];
+            ++c.out.frames_wanted;
+            c.out.rounds = t.total.size(); // those through all frames: of the last one
             if (t.total.empty())
                 continue;
+            measured.push_back(&t);
+            c.out.pairs_of_frame.push_back(c.pairs[f]);
+            add(c.out.sums, c.counts[f]);
             evaluate.push_back(median(t.evaluate));
             update.push_back(median(t.update));
             query.push_back(median(t.query));
@@ -153,8 +167,6 @@ std::vector<Measured> measure(const CollideScene& scene, const std::vector<Backe
         if (c.out.total_of_frame.empty())
             continue;
         c.out.frames = c.out.total_of_frame.size();
-        c.out.frames_wanted = scene.frames();
-        c.out.rounds = c.frames.back().total.size(); // those through all frames
         c.out.rounds_wanted = c.slow ? 1 : options.rounds;
         c.out.evaluate_ms = median(evaluate);
         c.out.update_ms = median(update);
@@ -163,8 +175,8 @@ std::vector<Measured> measure(const CollideScene& scene, const std::vector<Backe
         c.out.total_ms_low = c.out.total_ms_high = c.out.total_ms;
         for (std::size_t round = 0; round < c.out.rounds; ++round) {
             std::vector<double> of_round;
-            for (const Times& t : c.frames)
-                of_round.push_back(t.total[round]);
+            for (const Times* t : measured)
+                of_round.push_back(t->total[round]);
             const double middle = median(std::move(of_round));
             c.out.total_ms_low = std::min(c.out.total_ms_low, middle);
             c.out.total_ms_high = std::max(c.out.total_ms_high, middle);

@@ -16,7 +16,8 @@ struct Measured {
     double pairs = 0;                           ///< median per frame
     std::size_t frames = 0;                     ///< measured
     std::size_t frames_wanted = 0, rounds = 0,
-                rounds_wanted = 0; ///< more than measured after an interrupt; a slow backend wants one round
+                rounds_wanted =
+                    0; ///< more than measured after an interrupt; a slow backend wants one round, of every fourth frame
 
     Range total() const { return {total_ms, total_ms_low, total_ms_high}; }
     bool is_complete() const { return frames == frames_wanted && rounds == rounds_wanted; }
@@ -28,7 +29,7 @@ struct Measured {
 };
 
 struct MeasureOptions {
-    std::size_t rounds = 3; ///< through all frames, backends taking turns; slow ones run once
+    std::size_t rounds = 3; ///< through all frames, backends taking turns; slow ones once through every fourth
     int threads = 1;        ///< one: on one core
     bool cold = false;      ///< evict the caches before every frame
 };

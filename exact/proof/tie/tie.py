@@ -121,6 +121,8 @@ MUTATIONS = [
     (ORIENTATION, "greatest{std::max(std::abs(p[0]), std::abs(q[0]))", "greatest{std::abs(p[0])"),
 ]
 
+SHARE = min(1.0, float(os.environ.get("CINCH_TEST_SHARE", "1")))  # of the cases and of the mutations
+
 
 class Compiler:
     """Compiles SOURCES into a folder, with an overlay of changed files before the tree."""
@@ -177,7 +179,8 @@ def mutations(compare):
         if not agree(compiler.program(), compare, 1, 4000, quiet=True):
             print("the sources as they are do not agree with the model")
             return 1
-        for i, (file, old, new) in enumerate(MUTATIONS):
+        tried = MUTATIONS[::max(1, round(1 / SHARE))]
+        for i, (file, old, new) in enumerate(tried):
             start = time.time()
             text = (ROOT / file).read_text()
             if text.count(old) != 1:
@@ -192,7 +195,7 @@ def mutations(compare):
             missed += not noticed
             took = f"{time.time() - start:5.1f} s"
             print(f"{'noticed' if noticed else 'MISSED '} {took}  {file}: {old!r} -> {new!r}", flush=True)
-    print(f"{len(MUTATIONS) - missed} of {len(MUTATIONS)} noticed")
+    print(f"{len(tried) - missed} of {len(tried)} noticed")
     return 1 if missed else 0
 
 
@@ -200,7 +203,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("what", choices=["compare", "mutations"])
     parser.add_argument("compare")
-    parser.add_argument("--cases", type=int, default=100000)
+    parser.add_argument("--cases", type=int, default=round(100000 * SHARE))
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--program")
     options = parser.parse_args()
