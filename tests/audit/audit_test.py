@@ -51,8 +51,9 @@ def confirm(name, *options):
     return {(row["clip"], row["formula"]): row for row in rows}
 
 
-def arm(folder, name, animate, scale_channel=False):
-    """Two bones along x, length 1 each, the second bends or grows; four vertices at each of three places."""
+def arm(folder, name, animate):
+    """Two bones along x, length 1 each, the second bends or grows; four vertices at each of three places. Or a morph
+    target lifts it, by these weights."""
     m = Maker()
     places, joints, weights = [], [], []
     for x in (0.0, 1.0, 2.0):
@@ -69,15 +70,17 @@ def arm(folder, name, animate, scale_channel=False):
     bind = m.add([identity, back], "MAT4")
     times = m.add([(0.0,), (1.0,), (2.0,)], "SCALAR")
     path, values = animate
-    values = m.add(values, "VEC4" if path == "rotation" else "VEC3")
+    lift = m.add([(0, 0, x) for x, _, _ in places], "VEC3")
+    values = m.add(values, {"rotation": "VEC4", "weights": "SCALAR"}.get(path, "VEC3"))
+    targets = {"targets": [{"POSITION": lift}]} if path == "weights" else {}
     m.write(folder, name, {
         "scene": 0, "scenes": [{"nodes": [0, 1]}],
         "nodes": [{"mesh": 0, "skin": 0}, {"children": [2]}, {"translation": [1, 0, 0]}],
         "meshes": [{"primitives": [{"attributes": {"POSITION": position, "JOINTS_0": joint, "WEIGHTS_0": weight},
-                                    "indices": index}]}],
+                                    "indices": index, **targets}]}],
         "skins": [{"joints": [1, 2], "inverseBindMatrices": bind}],
         "animations": [{"name": "a", "samplers": [{"input": times, "output": values}],
-                        "channels": [{"sampler": 0, "target": {"node": 2, "path": path}}]}]})
+                        "channels": [{"sampler": 0, "target": {"node": 0 if targets else 2, "path": path}}]}]})
     return os.path.join(folder, name)
 
 
@@ -120,6 +123,11 @@ with tempfile.TemporaryDirectory() as folder:
         audited(os.path.join(folder, "bent.gltf"), "--outside", f"own={method} {name}", status=status)
     for text in ("own", "=true", "own=", "cinch best=true", "joint-boxes=true"):
         audited(os.path.join(folder, "bent.gltf"), "--outside", text, status=2)
+    # The most that a morph target does alone holds until its weight is above 1.
+    for weights, verdicts in (((0, 0, 0), ("holds", "to rounding")), ((0, 1, 0), ("holds", "to rounding")),
+                              ((0, 2, 0), ("refuted",))):
+        lifted = confirm(arm(folder, "lifted.gltf", ("weights", [(w,) for w in weights])))
+        assert lifted["a", "morph-average"]["verdict"] in verdicts, (weights, lifted["a", "morph-average"])
     faces = confirm(face(folder))
     assert {f for _, f in faces} >= {"morph-average", "rest-box"}
     confirm(crowd(folder))
