@@ -181,11 +181,12 @@ class CheckerTest(unittest.TestCase):
                 records[i]["bounds"] = ["inf"] * 6
             self.assert_accepted(sealed(records), "infinite")
 
-    def test_bounds_over_time_are_refused_by_name(self):
-        path = written(self.folder.name, ['{"certificate": "cinch times 1"}'])
-        status, line = by_cinch_check(path)
-        self.assertEqual(status, REJECTED)
-        self.assertIn("not of this checker: bounds over time", line)
+    def test_what_is_of_others_is_refused_by_name(self):
+        for header, what in (('{"certificate": "cinch times 1"}', "bounds over time"),
+                             ('{"certificate": "cinch 2", "targets": 1}', "morph targets")):
+            status, line = by_cinch_check(written(self.folder.name, [header]))
+            self.assertEqual(status, REJECTED)
+            self.assertIn("not of this checker: " + what, line)
 
     def test_usage(self):
         for arguments, status in ((["--help"], 0), (["--nothing"], 2), (["a", "b"], 2), (["/no/such/file"], 1)):
