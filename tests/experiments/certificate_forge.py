@@ -4,6 +4,7 @@ import copy
 import gzip
 import hashlib
 import json
+import math
 import os
 import struct
 
@@ -78,3 +79,32 @@ def written(folder, lines, name="changed.jsonl"):
     with open(path, "wb") as file:
         file.write(data)
     return path
+
+
+def edited(records, rng):
+    """One edit at random: of a value anywhere, or of the list of records."""
+    i = rng.randrange(len(records))
+    kind = rng.randrange(10)
+    if kind == 0:
+        del records[i]
+    elif kind == 1:
+        records.insert(rng.randrange(len(records)), copy.deepcopy(records[i]))
+    elif kind == 2:
+        j = rng.randrange(len(records))
+        records[i], records[j] = records[j], records[i]
+    else:
+        where, key = records[i], rng.choice(list(records[i]))
+        while isinstance(where[key], (list, dict)) and where[key] and rng.random() < 0.9:
+            where = where[key]
+            key = rng.randrange(len(where)) if isinstance(where, list) else rng.choice(list(where))
+        value = where[key]
+        if isinstance(value, str) and "0x" in value:
+            x = float.fromhex(value)
+            where[key] = rng.choice((x * (1 + 2.0**-20), x * (1 - 2.0**-20), x + 1, x - 1, -x, x * 1e200, x * 1e-200,
+                                     x * 1e-300, 0.0, -0.0, math.inf)).hex()
+        elif isinstance(value, list) and value:
+            rng.choice((value.pop, value.reverse, lambda: value.append(value[0])))()
+        elif isinstance(value, int):
+            where[key] = value + rng.choice((-1, 1, 7))
+        else:
+            where[key] = rng.choice((None, 0, "", [], "best", "obb", "0x1p+0"))

@@ -20,7 +20,7 @@ CINCH, CHECKER = sys.argv[1:3]
 sys.dont_write_bytecode = True
 sys.path[:0] = [os.path.dirname(CHECKER), os.path.dirname(os.path.abspath(__file__))]
 import check_certificate  # noqa: E402
-from certificate_forge import of, sealed, written  # noqa: E402
+from certificate_forge import edited, of, sealed, written  # noqa: E402
 import certificate_mutations_of_frames  # noqa: E402, F401
 import certificate_mutations_of_surfaces  # noqa: E402, F401
 import certificate_mutations_of_text  # noqa: E402, F401
@@ -334,35 +334,6 @@ class CertificateTest(unittest.TestCase):
             done = subprocess.run([sys.executable, CHECKER, self.mesh, *options], **CAPTURED)
             self.assertEqual(done.returncode, 2)
             self.assertNotIn("Traceback", done.stdout)
-
-
-def edited(records, rng):
-    """One edit at random: of a value anywhere, or of the list of records."""
-    i = rng.randrange(len(records))
-    kind = rng.randrange(8)
-    if kind == 0:
-        del records[i]
-    elif kind == 1:
-        records.insert(rng.randrange(len(records)), copy.deepcopy(records[i]))
-    elif kind == 2:
-        j = rng.randrange(len(records))
-        records[i], records[j] = records[j], records[i]
-    else:
-        where, key = records[i], rng.choice(list(records[i]))
-        while isinstance(where[key], (list, dict)) and where[key] and rng.random() < 0.9:
-            where = where[key]
-            key = rng.randrange(len(where)) if isinstance(where, list) else rng.choice(list(where))
-        value = where[key]
-        if isinstance(value, str) and "0x" in value:
-            x = float.fromhex(value)
-            where[key] = rng.choice((x * (1 + 2.0**-20), x * (1 - 2.0**-20), x + 1, x - 1, -x, x * 1e200, x * 1e-200,
-                                     0.0, math.inf)).hex()
-        elif isinstance(value, list) and value:
-            rng.choice((value.pop, value.reverse, lambda: value.append(value[0])))()
-        elif isinstance(value, int):
-            where[key] = value + rng.choice((-1, 1, 7))
-        else:
-            where[key] = rng.choice((None, 0, "", [], "best", "obb", "0x1p+0"))
 
 
 if __name__ == "__main__":
