@@ -121,7 +121,8 @@ void add_collide(CLI::App& app, Run& run)
         ->option_text("NAME,...");
     option("--frames", o.frames, "the last so many of the scene [60]")->check(CLI::Range(1, 1000000))->option_text("N");
     option("--rounds", o.rounds,
-           "through all frames, backends taking turns; those over 100 ms a frame go once through every fourth [3]")
+           "through all frames, backends taking turns; those over 100 ms a frame go once through every fourth of 40 "
+           "and more [3]")
         ->check(CLI::Range(1, 1000))
         ->option_text("N");
     option("--threads", o.threads, "threads [1, on one core]; pairs are the same, in the same order")

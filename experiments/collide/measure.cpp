@@ -13,8 +13,8 @@
 namespace cinch {
 namespace {
 
-constexpr double slow_ms = 100;        // a frame of a slow backend, the first one apart, which may build
-constexpr std::size_t slow_stride = 4; // which is measured in every fourth frame, once
+constexpr double slow_ms = 100; // a frame of a slow backend, the first one apart, which may build
+constexpr std::size_t slow_stride = 4, many_frames = 40; // which is measured once, in every fourth of many frames
 
 double median(std::vector<double> all)
 {
@@ -114,6 +114,7 @@ std::vector<Measured> measure(const CollideScene& scene, const std::vector<Backe
     if (options.threads == 1)
         pin_to_one_core();
     std::vector<TrianglePair> pairs;
+    const std::size_t stride = scene.frames() < many_frames ? 1 : slow_stride;
     Progress progress(scene.name, kinds.size() * options.rounds);
     std::size_t done = 0;
     try {
@@ -121,7 +122,7 @@ std::vector<Measured> measure(const CollideScene& scene, const std::vector<Backe
             for (std::size_t k = 0; k < kinds.size(); ++k) {
                 Contestant& c = all[k];
                 for (std::size_t f = 0; f < scene.frames() && !(round > 0 && c.slow); ++f) {
-                    if (c.slow && f % slow_stride != 0)
+                    if (c.slow && f % stride != 0)
                         continue;
                     run_frame(c, f, options, pairs);
                     if (round > 0)
@@ -150,7 +151,7 @@ std::vector<Measured> measure(const CollideScene& scene, const std::vector<Backe
     for (Contestant& c : all) {
         std::vector<double> evaluate, update, query;
         std::vector<const Times*> measured;
-        for (std::size_t f = 0; f < c.frames.size(); f += c.slow ? slow_stride : 1) {
+        for (std::size_t f = 0; f < c.frames.size(); f += c.slow ? stride : 1) {
             const Times& t = c.frames[f];
             ++c.out.frames_wanted;
             c.out.rounds = t.total.size(); // those through all frames: of the last one

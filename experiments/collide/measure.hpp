@@ -29,7 +29,7 @@ struct Measured {
 };
 
 struct MeasureOptions {
-    std::size_t rounds = 3; ///< through all frames, backends taking turns; slow ones once through every fourth
+    std::size_t rounds = 3; ///< through all frames, backends taking turns; slow ones once through every fourth of many
     int threads = 1;        ///< one: on one core
     bool cold = false;      ///< evict the caches before every frame
 };
