@@ -87,6 +87,31 @@ std::string of_clips(const std::vector<const Record*>& all)
                        blocks);
 }
 
+double median_ratio(const std::vector<const Record*>& all, const std::string& formula)
+{
+    std::vector<double> ratios;
+    for (const Record* r : all)
+        if (r->word("formula") == formula)
+            ratios.push_back(r->number("mean_ratio"));
+    std::sort(ratios.begin(), ratios.end());
+    return ratios.empty() ? 0 : ratios[ratios.size() / 2];
+}
+
+// What the rows say of the formula that most engines end with.
+std::string of_joint_boxes(const std::vector<const Record*>& all)
+{
+    const double joints = median_ratio(all, "joint-boxes"), ours = median_ratio(all, "cinch best");
+    if (joints == 0 || ours == 0)
+        return "";
+    return html::paragraph(
+        fmt::format("For one box of a character a box per joint is enough: in real arithmetic it holds in every "
+                    "pose that has no morph targets, and here it is {:.2f} times the true box in size, cinch’s "
+                    "default {:.2f} times. It is not enough where morph targets displace the surface, where floats "
+                    "round it inward (joint-boxes-float), where few poses stand for all times (key-union, "
+                    "fps-union), and where more than one box is asked for, as by a tree for collisions.",
+                    joints, ours));
+}
+
 } // namespace
 
 Section audit_section(const Results& results)
@@ -97,7 +122,7 @@ Section audit_section(const Results& results)
             all.push_back(r);
     Section section{"audit", "What engines’ formulas do", "", {}};
     if (!all.empty())
-        section.body = by_formula(all) + of_clips(all);
+        section.body = of_joint_boxes(all) + by_formula(all) + of_clips(all);
     return section;
 }
 
