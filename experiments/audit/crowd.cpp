@@ -244,9 +244,9 @@ int audit_crowd(const CrowdAuditOptions& options)
         output.add(record_of(figure, "audit"));
     output.finish();
     if (!options.output.records_only()) {
-        fmt::print(
-            "ns: per body, on one core, in turn; M/s: millions of bodies a second. area: of all boxes of a body,\n"
-            "over that of the engines' one. bytes: of rest data, which all bodies share.\n\n");
+        fmt::print("ns: per body, on one core, in turn; M/s: millions of bodies a second. area: of\n"
+                   "all boxes of a body, over that of the engines' one. bytes: of rest data, which\n"
+                   "all bodies share.\n\n");
         print(figures);
         fmt::print("\n{}\n", describe(from));
     }

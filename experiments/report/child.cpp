@@ -15,15 +15,11 @@
 
 namespace cinch {
 
-int run_child(const std::vector<std::string>& arguments, const std::filesystem::path& output)
-{
-    std::vector<std::string> words{"cinch"};
-    words.insert(words.end(), arguments.begin(), arguments.end());
-    return run_program("/proc/self/exe", words, "/dev/null", output);
-}
+namespace {
 
-int run_program(const std::string& program, const std::vector<std::string>& words, const std::filesystem::path& input,
-                const std::filesystem::path& output)
+// `own_group`: what the program starts ends with it.
+int run(const std::string& program, const std::vector<std::string>& words, const std::filesystem::path& input,
+        const std::filesystem::path& output, bool own_group)
 {
     std::vector<char*> pointers;
     for (const std::string& word : words)
@@ -36,6 +32,8 @@ int run_program(const std::string& program, const std::vector<std::string>& word
     const pid_t parent = getpid(), child = fork();
     if (child == 0) {
         prctl(PR_SET_PDEATHSIG, SIGKILL);
+        if (own_group)
+            setpgid(0, 0);
         sigset_t ours; // what a terminal sends to both is for the parent to answer
         sigemptyset(&ours);
         sigaddset(&ours, SIGINT);
@@ -57,11 +55,26 @@ int run_program(const std::string& program, const std::vector<std::string>& word
         if (ended < 0 && errno != EINTR)
             throw InputError("a process was lost");
         if (interrupted()) // nobody reads half a result
-            kill(child, SIGKILL);
+            kill(own_group && getpgid(child) == child ? -child : child, SIGKILL);
         const timespec pause{0, 20'000'000};
         nanosleep(&pause, nullptr);
     }
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+} // namespace
+
+int run_child(const std::vector<std::string>& arguments, const std::filesystem::path& output)
+{
+    std::vector<std::string> words{"cinch"};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    return run("/proc/self/exe", words, "/dev/null", output, false);
+}
+
+int run_program(const std::string& program, const std::vector<std::string>& words, const std::filesystem::path& input,
+                const std::filesystem::path& output)
+{
+    return run(program, words, input, output, true);
 }
 
 } // namespace cinch

@@ -12,7 +12,7 @@ namespace cinch {
 /// signal if one ended it.
 int run_child(const std::vector<std::string>& arguments, const std::filesystem::path& output);
 
-/// The same of any program; `words` begin with its name.
+/// The same of any program; `words` begin with its name. An interrupt ends what it has started, too.
 int run_program(const std::string& program, const std::vector<std::string>& words, const std::filesystem::path& input,
                 const std::filesystem::path& output);
 

@@ -2,13 +2,21 @@
 """audit_test.py CINCH [SHARED]: what `cinch audit` says of formulas of engines: every counterexample against a reader
 and sampler of glTF of its own, written from the specification; and formulas on hand-made skins, of which it is known
 what they do."""
-import json, math, os, pathlib, subprocess, sys, tempfile
+import json, math, os, pathlib, signal, subprocess, sys, tempfile, time
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent / "time"))
 from made_characters import Maker, crowd, face, many_clips, spin, wave
 from sampled_character import Character
 
 program, shared = sys.argv[1], sys.argv[2] if len(sys.argv) > 2 else ""
+
+
+def wait_for(what):
+    for _ in range(600):
+        if what():
+            return
+        time.sleep(0.1)
+    raise AssertionError("waited in vain")
 
 
 def audited(*words, status=0):
@@ -121,6 +129,23 @@ with tempfile.TemporaryDirectory() as folder:
             assert less["verdict"] == "refuted" and abs(less["worst_overflow"] - 0.125) < 1e-9, less
     for name, status in (("short", 2), ("odd", 2), ("1e-9; exit 3", 2)):
         audited(os.path.join(folder, "bent.gltf"), "--outside", f"own={method} {name}", status=status)
+    # An interrupt ends what the method has started.
+    here = subprocess.Popen([program, "audit", os.path.join(folder, "bent.gltf"), "--outside",
+                             "own=cat > /dev/null; sleep 3333.25; true"], stdout=subprocess.DEVNULL,
+                            stderr=subprocess.DEVNULL)
+    def running():
+        for path in pathlib.Path("/proc").glob("[0-9]*/cmdline"):
+            try:
+                if path.read_bytes() == b"sleep\0003333.25\0":
+                    return True
+            except OSError:
+                pass  # it has ended
+        return False
+
+    wait_for(running)
+    here.send_signal(signal.SIGINT)
+    assert here.wait(60) == 130
+    wait_for(lambda: not running())
     for text in ("own", "=true", "own=", "cinch best=true", "joint-boxes=true"):
         audited(os.path.join(folder, "bent.gltf"), "--outside", text, status=2)
     # The most that a morph target does alone holds until its weight is above 1.
