@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include "experiments/report/view.hpp"
-#include "experiments/report/view/embedded.hpp"
+#include "experiments/embedded.hpp"
 
 namespace cinch {
 namespace {

@@ -3,7 +3,7 @@
 # cinch::embedded::n.
 # By way of hex digits, for which CMake has no other meaning.
 string(REPLACE "," ";" files "${FILES}")
-set(code "#include \"experiments/report/view/embedded.hpp\"\n\nnamespace cinch::embedded {\n\n")
+set(code "#include \"experiments/embedded.hpp\"\n\nnamespace cinch::embedded {\n\n")
 string(APPEND code "static constexpr char ${NAME}_text[] =\n    \"\"")
 foreach(file IN LISTS files)
   file(READ ${file} text HEX)
