@@ -31,7 +31,7 @@ void add_bake(CLI::App& app, Run& run)
             ->option_text("S");
     command.add_flag("--whole", o.whole, wrapped("one interval per clip"))->excludes(interval);
     option("--tolerance", o.tolerance,
-           "by how much of a BV's half extent a bound over time may exceed its bounds at instants [0.01]")
+           "by how much of its half diagonal a BV's box over time may exceed its boxes at instants [0.01]")
         ->check(within(1e-6, 1e6))
         ->option_text("X");
     option("--engine", o.engine.float32,

@@ -78,11 +78,12 @@ std::string of_box(const double* s) { return fmt::format("({:.6g}, {:.6g}, {:.6g
 
 std::string words_of(const BakedFigures& f)
 {
-    return fmt::format("  time adds {:.3f} on average, {:.3f} at most; root {:.3f}, leaves {:.3f} of the truth; {} "
-                       "intervals for {} between keys\n  outside the union of frames at 30 fps: {:.2f} % of the half "
-                       "diagonal; of key times: {:.2f} %; of these bounds: {:.2f} %\n",
-                       f.time_mean, f.time_max, f.root, f.leaves, f.intervals, f.key_segments, 100 * f.missed_30fps,
-                       100 * f.missed_keys, 100 * f.missed_by_us);
+    return fmt::format(
+        "  time adds {:.3f} on average, {:.3f} at most; root {:.3f}, leaves {:.3f} of the truth; "
+        "{:.1f} intervals for {} between keys\n  outside the union of frames at 30 fps: {:.2f} % of the half "
+        "diagonal; of key times: {:.2f} %; of these bounds: {:.2f} %\n",
+        f.time_mean, f.time_max, f.root, f.leaves, f.intervals, f.key_segments, 100 * f.missed_30fps,
+        100 * f.missed_keys, 100 * f.missed_by_us);
 }
 
 void print_clip(const BakedClip& clip)
@@ -123,7 +124,7 @@ void print_bake(const Merged& all, const OutputOptions& options, const Provenanc
             for (const std::string& line : body.report)
                 fmt::print("{}\n", line);
         std::vector<BakedFigures> figures;
-        std::optional<Range> cost;
+        std::optional<IntervalCost> cost;
         for (std::size_t i = 0; i < body.clips; ++i, ++cell) {
             if (all.cells[cell].empty())
                 continue;
@@ -142,7 +143,7 @@ void print_bake(const Merged& all, const OutputOptions& options, const Provenanc
         }
         if (!figures.empty()) {
             const std::vector<Figure> reached =
-                time_targets(figures, cost.value_or(Range(std::nan(""))), body.levels.back());
+                time_targets(figures, cost.value_or(IntervalCost()), body.levels.back());
             for (const Figure& figure : reached)
                 output.add(record_of(figure, "bake"));
             if (words)
@@ -193,7 +194,7 @@ public:
             clip.figures =
                 figures_of(body_.input.surface, bvh_, body_.targets(), refit_, source.motion, options_, clip.intervals);
             if (number == 0)
-                clip.cost = refits_per_interval(body_, bvh_, options_.bounds);
+                clip.cost = interval_cost(body_, bvh_, options_.bounds);
         }
         for (BakedInterval& interval : clip.intervals)
             interval.supports.resize(bvs_down_to(bvh_, options_.level) * k);

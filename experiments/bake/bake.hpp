@@ -20,7 +20,7 @@ struct BakeOptions {
     int level = 0;           ///< deepest of the BVs written; -1: all
     double interval_s = 0;   ///< 0: by itself
     bool whole = false;      ///< one interval per clip
-    double tolerance = 0.01; ///< of a BV's half extent
+    double tolerance = 0.01; ///< of a BV's half diagonal
     bool prove = false;
     bool report = false;               ///< figures beside the truth
     int samples = 30;                  ///< of the truth, between two keys

@@ -33,6 +33,15 @@ BakedFigures figures_of(const Json& f)
             f.at("length_s")};
 }
 
+Json to_json(const Range& r) { return {or_null(r.value), or_null(r.low), or_null(r.high)}; }
+
+Range range_of(const Json& r)
+{
+    if (r.at(0).is_null())
+        return std::nan("");
+    return {number_or(r.at(0), HUGE_VAL), number_or(r.at(1), HUGE_VAL), number_or(r.at(2), HUGE_VAL)};
+}
+
 } // namespace
 
 Rows rows_of(const BakedClip& clip)
@@ -45,7 +54,7 @@ Rows rows_of(const BakedClip& clip)
     if (clip.figures)
         head["figures"] = to_json(*clip.figures);
     if (clip.cost)
-        head["refits"] = {or_null(clip.cost->value), or_null(clip.cost->low), or_null(clip.cost->high)};
+        head["refits"] = {to_json(clip.cost->bend), to_json(clip.cost->norms)};
     Rows rows{std::move(head)};
     for (const BakedInterval& interval : clip.intervals) {
         Json supports = Json::array();
@@ -69,12 +78,8 @@ BakedClip baked_clip_of(const Rows& rows)
     }
     if (head.contains("figures"))
         clip.figures = figures_of(head.at("figures"));
-    if (head.contains("refits")) {
-        const Json& r = head.at("refits");
-        clip.cost = r.at(0).is_null() ? Range(std::nan(""))
-                                      : Range(number_or(r.at(0), HUGE_VAL), number_or(r.at(1), HUGE_VAL),
-                                              number_or(r.at(2), HUGE_VAL));
-    }
+    if (head.contains("refits"))
+        clip.cost = {range_of(head.at("refits").at(0)), range_of(head.at("refits").at(1))};
     for (std::size_t i = 1; i < rows.size(); ++i) {
         BakedInterval interval{rows[i].at("t0"), rows[i].at("t1"), {}, rows[i].at("intervals")};
         for (const Json& s : rows[i].at("supports"))

@@ -5,7 +5,6 @@
 
 #include "experiments/bake/baked_clip.hpp"
 #include "experiments/bake/prove.hpp"
-#include "experiments/measure/race.hpp"
 #include "experiments/records/row_folder.hpp"
 
 namespace cinch {
@@ -18,7 +17,7 @@ struct BakedClip {
     std::optional<exact::TimeVerdict> verdict;
     std::string worst; ///< worst_line of the verdict
     std::optional<BakedFigures> figures;
-    std::optional<Range> cost; ///< of an interval in refits, which is measured once per body
+    std::optional<IntervalCost> cost; ///< which is measured once per body
 };
 
 /// One row for the clip, and one per interval. Infinite supports are null.

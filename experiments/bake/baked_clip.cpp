@@ -166,8 +166,8 @@ BakedFigures figures_of(const DeformableSurface& surface, const Bvh& bvh, std::s
         throw_if_interrupted();
         std::vector<double> hull(count, least);
         each_time(motion, options.samples, interval.first_s, interval.last_s, [&](double t) {
-            refit.at(motion.at(t), motion.weights ? motion.weights(t) : std::vector<double>(), now);
-            take(hull, now);
+            take(hull, refit.at(refit.all(), motion.at(t), motion.weights ? motion.weights(t) : std::vector<double>())
+                           .supports);
             vertices(motion, t, now);
             take(truth, now);
             for (std::size_t d = 0; d < 6; ++d)

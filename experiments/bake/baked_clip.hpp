@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cmath>
+
 #include "experiments/bake/bake.hpp"
+#include "experiments/measure/race.hpp"
 #include "toolkit/time/bound_over.hpp"
 
 namespace cinch {
@@ -10,7 +13,7 @@ namespace cinch {
 struct BakedInterval {
     double first_s = 0, last_s = 0;
     std::vector<double> supports; ///< of all BVs, supports[bv·k + d]
-    std::size_t intervals = 0;    ///< that it was put together from
+    double intervals = 0;         ///< that it was put together from, mean of the BVs
 };
 
 /// A clip cut into intervals: one, equal ones, or such that a cut in two halves would make the character's box smaller
@@ -26,12 +29,18 @@ struct BakedFigures {
     double missed_30fps = 0, missed_keys = 0; ///< how far the surface leaves the union of true boxes at 30 frames per
                                               ///< second and at key times, of its half diagonal
     double missed_by_us = 0;                  ///< the same of the root's bounds: 0
-    std::size_t key_segments = 0, intervals = 0;
+    std::size_t key_segments = 0;
+    double intervals = 0; ///< that a BV was bounded in, mean of the BVs
     double length_s = 0;
 };
 BakedFigures figures_of(const DeformableSurface& surface, const Bvh& bvh, std::span<const MorphTarget> targets,
                         IntervalRefitter& refit, const TimedMotion& motion, const BakeOptions& options,
                         const std::vector<BakedInterval>& baked);
+
+/// What bounding one interval costs, in refits: where every BV's bend is bounded, and by norms alone.
+struct IntervalCost {
+    Range bend = std::nan(""), norms = std::nan("");
+};
 
 /// Of a level and those above it; the level of a BV, given where levels begin (Bvh::level).
 std::size_t bvs_down_to(const Bvh& bvh, int level);

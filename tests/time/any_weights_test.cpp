@@ -115,7 +115,7 @@ TEST_CASE("weights of a range that is a point are refuted and proven as known on
         const TimedMotion motion = character_motion(known, known.rest, drawn.surface);
         IntervalRefitter refit(drawn.bvh, drawn.surface, {.kdop = kdop}, known.targets);
         std::vector<double> supports(drawn.bvh.bvs.size() * static_cast<std::size_t>(kdop)); // of one pose
-        refit.at(motion.at(motion.first_s()), known.target_weights, supports);
+        supports = refit.at(refit.all(), motion.at(motion.first_s()), known.target_weights).supports;
         exact::TimeVerdict verdict[2];
         try {
             for (const bool any : {false, true}) {

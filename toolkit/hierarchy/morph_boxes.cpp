@@ -86,53 +86,68 @@ MorphBoxes::MorphBoxes(const Bvh& bvh, const DeformableSurface& surface, std::sp
 void MorphBoxes::add(std::span<const Term> terms, int kdop, std::span<double> supports) const
 {
     const auto k = static_cast<std::size_t>(kdop);
-    const auto axes = axes_of(kdop);
-    std::vector<double> reach; // of each simulation node of a BV along each direction
-    for (std::size_t i = 0; i < bvh_.bvs.size(); ++i) {
-        if (row_[i] == row_[i + 1])
-            continue;
-        const RestBv bv = bvh_.rest(i);
-        reach.assign(bv.node.size() * k, 0.0);
-        bool any = false;
-        for (const Term& term : terms) {
-            Vec3 centre = Vec3::Zero(), half = Vec3::Zero();
-            for (std::uint32_t n = row_[i]; n < row_[i + 1]; ++n) {
-                const double a = term.weight[target_[n]];
-                if (a == 0)
-                    continue;
-                centre += a * centre_[n];
-                half += std::abs(a) * half_[n];
-                any = true;
-            }
-            if (half.isZero(0) && centre.isZero(0))
+    std::vector<double> scratch;
+    for (std::size_t i = 0; i < bvh_.bvs.size(); ++i)
+        add(terms, axes_of(kdop), i, scratch, supports.subspan(i * k, k));
+}
+
+void MorphBoxes::add(std::span<const Term> terms, int kdop, std::span<const std::uint32_t> bvs,
+                     std::span<double> supports) const
+{
+    const auto k = static_cast<std::size_t>(kdop);
+    std::vector<double> scratch;
+    for (std::size_t n = 0; n < bvs.size(); ++n)
+        add(terms, axes_of(kdop), bvs[n], scratch, supports.subspan(n * k, k));
+}
+
+// `reach`: of each simulation node of the BV along each direction.
+void MorphBoxes::add(std::span<const Term> terms, std::span<const Axis> axes, std::size_t i, std::vector<double>& reach,
+                     std::span<double> supports) const
+{
+    if (row_[i] == row_[i + 1])
+        return;
+    const std::size_t k = 2 * axes.size();
+    const RestBv bv = bvh_.rest(i);
+    reach.assign(bv.node.size() * k, 0.0);
+    bool any = false;
+    for (const Term& term : terms) {
+        Vec3 centre = Vec3::Zero(), half = Vec3::Zero();
+        for (std::uint32_t n = row_[i]; n < row_[i + 1]; ++n) {
+            const double a = term.weight[target_[n]];
+            if (a == 0)
                 continue;
-            for (std::size_t j = 0; j < bv.node.size(); ++j) {
-                const auto& m = term.maps[bv.node[j]].m;
-                for (std::size_t a = 0; a < k / 2; ++a) {
-                    double along = 0, around = 0;
-                    for (int c = 0; c < 3; ++c) {
-                        const double g = axes[a][0] * m[0][c] + axes[a][1] * m[1][c] + axes[a][2] * m[2][c];
-                        along += g * centre[c];
-                        around += std::abs(g) * half[c];
-                    }
-                    reach[j * k + 2 * a] += around + along;
-                    reach[j * k + 2 * a + 1] += around - along;
+            centre += a * centre_[n];
+            half += std::abs(a) * half_[n];
+            any = true;
+        }
+        if (half.isZero(0) && centre.isZero(0))
+            continue;
+        for (std::size_t j = 0; j < bv.node.size(); ++j) {
+            const auto& m = term.maps[bv.node[j]].m;
+            for (std::size_t a = 0; a < k / 2; ++a) {
+                double along = 0, around = 0;
+                for (int c = 0; c < 3; ++c) {
+                    const double g = axes[a][0] * m[0][c] + axes[a][1] * m[1][c] + axes[a][2] * m[2][c];
+                    along += g * centre[c];
+                    around += std::abs(g) * half[c];
                 }
+                reach[j * k + 2 * a] += around + along;
+                reach[j * k + 2 * a + 1] += around - along;
             }
         }
-        for (std::size_t d = 0; any && d < k; ++d) {
-            double least = infinite;
-            bool finite = true;
-            for (std::size_t j = 0; j < bv.node.size(); ++j) {
-                const double c = reach[j * k + d];
-                finite = finite && std::isfinite(c);
-                least = std::min(least, c);
-            }
-            const double mean = // weights sum to 1
-                finite ? least + greatest_mean(bv, [&](std::size_t j) { return reach[j * k + d] - least; }) : infinite;
-            const double sum = succ(supports[i * k + d] + mean);
-            supports[i * k + d] = std::abs(sum) < infinite ? sum : infinite; // what is no number hides nothing
+    }
+    for (std::size_t d = 0; any && d < k; ++d) {
+        double least = infinite;
+        bool finite = true;
+        for (std::size_t j = 0; j < bv.node.size(); ++j) {
+            const double c = reach[j * k + d];
+            finite = finite && std::isfinite(c);
+            least = std::min(least, c);
         }
+        const double mean = // weights sum to 1
+            finite ? least + greatest_mean(bv, [&](std::size_t j) { return reach[j * k + d] - least; }) : infinite;
+        const double sum = succ(supports[d] + mean);
+        supports[d] = std::abs(sum) < infinite ? sum : infinite; // what is no number hides nothing
     }
 }
 

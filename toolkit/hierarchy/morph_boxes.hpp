@@ -21,6 +21,9 @@ public:
     /// extents Σ |a_i| h_i of the BV's box. Rounds to nearest but for the last sum: of m targets and n simulation nodes
     /// every c_j and the mean are off by at most (m + n + 16) u ‖γ‖ times 4 Σ_terms ‖A_j‖ Σ_i |a_i| max ‖d_i‖.
     void add(std::span<const Term> terms, int kdop, std::span<double> supports) const;
+    /// The same to those of the BVs listed, k per BV of the list.
+    void add(std::span<const Term> terms, int kdop, std::span<const std::uint32_t> bvs,
+             std::span<double> supports) const;
 
     /// Adds to the supports of the BVs that one such term displaces, A_j the linear parts of the frame's own maps, what
     /// is rounded where frames have morph targets: with E = Σ_i |a_i| max ‖d_i‖∞ and X = `farthest` ≥ every ‖v⁰‖∞,
@@ -35,6 +38,9 @@ public:
     std::size_t count(std::size_t bv) const { return row_[bv + 1] - row_[bv]; }
 
 private:
+    void add(std::span<const Term> terms, std::span<const Axis> axes, std::size_t bv, std::vector<double>& scratch,
+             std::span<double> supports) const;
+
     const Bvh& bvh_;
     std::vector<std::uint32_t> row_{0}; // a BV's entries
     std::vector<std::uint32_t> target_; // of each entry

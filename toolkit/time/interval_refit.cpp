@@ -3,18 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <numeric>
 
 #include "toolkit/bounds/greatest_mean.hpp"
 #include "toolkit/bounds/rounding.hpp"
+#include "toolkit/deform/parallel.hpp"
 
 namespace cinch {
 namespace {
-
-bool same(const std::vector<AffineMap>& x, const std::vector<AffineMap>& y)
-{
-    return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof(AffineMap)) == 0;
-}
 
 bool is_zero(const AffineMap& map)
 {
@@ -55,69 +51,113 @@ double greatest_between(double first, double last, double bump, double path)
     return succ(std::min(parabola, std::max(most, lipschitz)));
 }
 
-void merge_children(const Bvh& bvh, std::size_t k, std::span<double> supports)
+bool is_near(std::span<const double> supports, std::span<const double> instants, double share)
 {
-    for (std::size_t i = bvh.bvs.size(); i-- > 0;) { // children come after parents
-        if (bvh.bvs[i].is_leaf())
-            continue;
-        const std::size_t first = bvh.bvs[i].first_child * k;
-        for (std::size_t d = 0; d < k; ++d)
-            supports[i * k + d] = std::min(supports[i * k + d], std::max(supports[first + d], supports[first + k + d]));
+    double squares = 0, excess = 0;
+    for (std::size_t a = 0; a < 3; ++a) {
+        const double half = (instants[2 * a] + instants[2 * a + 1]) / 2,
+                     over =
+                         std::max({0.0, supports[2 * a] - instants[2 * a], supports[2 * a + 1] - instants[2 * a + 1]});
+        squares += half * half;
+        excess += over * over;
     }
+    const double room = share > 0 ? share * std::sqrt(squares) : 0;
+    for (std::size_t d = 6; d < instants.size(); ++d) // unit axes are the shortest
+        if (supports[d] > instants[d] + room)
+            return false;
+    return std::isinf(room) || std::sqrt(excess) <= room;
 }
 
 IntervalRefitter::IntervalRefitter(const Bvh& bvh, const DeformableSurface& surface, const RefitOptions& options,
                                    std::span<const MorphTarget> targets)
-    : bvh_(bvh), kdop_(options.kdop), refit_(bvh, surface, options), morphs_(bvh, surface, targets)
+    : bvh_(bvh), kdop_(options.kdop), bounder_(bvh, surface, options, Bounder::Leaves::included),
+      morphs_(bvh, surface, targets), all_(bvh.bvs.size()), place_(bvh.bvs.size())
 {
-    const std::size_t count = bvh.bvs.size() * static_cast<std::size_t>(kdop_);
-    first_.resize(count);
-    last_.resize(count);
-    bend_.resize(count);
+    std::iota(all_.begin(), all_.end(), 0u);
+    for (const Axis& axis : axes_of(kdop_)) // the first three are those of the coordinates, of length 1
+        norm_.push_back(
+            succ(std::sqrt(static_cast<double>(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]))));
 }
 
-void IntervalRefitter::at(std::span<const AffineMap> maps, std::span<const double> weights, std::span<double> supports)
+void IntervalRefitter::refit(BvList bvs, std::span<const AffineMap> maps, std::span<double> supports)
 {
-    refit_(maps, supports);
-    if (const MorphBoxes::Term term{weights, maps}; !weights.empty())
-        morphs_.add({&term, 1}, kdop_, supports);
-    merge_children(bvh_, kdop(), supports);
+    bounder_.begin(maps);
+    parallel_blocks(bvs.size(), 64, [&](std::size_t first, std::size_t last) {
+        while (first < last) { // neighbours together
+            std::size_t end = first + 1;
+            while (end < last && bvs[end] == bvs[end - 1] + 1)
+                ++end;
+            bounder_.bound(bvs[first], bvs[end - 1] + 1, supports.subspan(first * kdop(), (end - first) * kdop()));
+            first = end;
+        }
+    });
 }
 
-void IntervalRefitter::operator()(const MotionInterval& motion, std::span<double> supports)
+void IntervalRefitter::merge_children(BvList bvs, std::span<double> supports)
 {
-    if (supports.size() != first_.size())
-        throw std::invalid_argument("supports has " + std::to_string(supports.size()) + " entries; the BVs need " +
-                                    std::to_string(first_.size()));
-    const MotionInterval::Morph& morph = motion.morph;
-    if (same(last_maps_, motion.first) && last_weights_ == morph.first)
-        first_.swap(last_);
-    else
-        at(motion.first, morph.first, first_);
-    last_maps_.clear();
-    at(motion.last, morph.last, last_);
-    last_maps_ = motion.last;
-    last_weights_ = morph.last;
-    if (std::all_of(motion.bend.begin(), motion.bend.end(), is_zero))
-        std::fill(bend_.begin(), bend_.end(), 0.0); // places move along straight lines
-    else
-        refit_(motion.bend, bend_);
-    if (!morph.empty()) { // (T e)″ = T″e + 2T′e′ + T e″, e the displacements
-        const MorphBoxes::Term terms[3] = {
-            {morph.at[0], motion.bend}, {morph.at[1], morph.slope}, {morph.at[2], morph.still}};
-        morphs_.add(terms, kdop_, bend_);
+    const std::size_t k = kdop();
+    for (std::size_t n = bvs.size(); n-- > 0;) { // children come after parents
+        place_[bvs[n]] = static_cast<std::uint32_t>(n);
+        const Bv& bv = bvh_.bvs[bvs[n]];
+        if (bv.is_leaf())
+            continue;
+        const double* one = &supports[place_[bv.first_child] * k];
+        const double* other = &supports[place_[bv.first_child + 1] * k];
+        for (std::size_t d = 0; d < k; ++d)
+            supports[n * k + d] = std::min(supports[n * k + d], std::max(one[d], other[d]));
     }
-    const auto axes = axes_of(kdop_);
-    const auto k = static_cast<std::size_t>(kdop_);
-    std::array<double, 13> norm; // of the axes; the first three are those of the coordinates, of length 1
-    for (std::size_t a = 0; a < axes.size(); ++a)
-        norm[a] = succ(std::sqrt(
-            static_cast<double>(axes[a][0] * axes[a][0] + axes[a][1] * axes[a][1] + axes[a][2] * axes[a][2])));
-    for (std::size_t i = 0; i < bvh_.bvs.size(); ++i) {
-        const RestBv bv = bvh_.rest(i);
-        // The greatest of each limit, and the mean of the remainder, which alone decides where all is well.
-        MotionInterval::Limits most;
-        for (const std::uint32_t j : bv.node) {
+}
+
+InstantBounds IntervalRefitter::at(BvList bvs, std::vector<AffineMap> maps, std::vector<double> weights)
+{
+    InstantBounds out{std::move(maps), std::move(weights), std::vector<double>(bvs.size() * kdop())};
+    refit(bvs, out.maps, out.supports);
+    if (const MorphBoxes::Term term{out.weights, out.maps}; !out.weights.empty())
+        morphs_.add({&term, 1}, kdop_, bvs, out.supports);
+    merge_children(bvs, out.supports);
+    return out;
+}
+
+std::size_t IntervalRefitter::operator()(BvList bvs, const MotionInterval& motion, const InstantBounds& first,
+                                         const InstantBounds& last, double enough, std::span<double> supports)
+{
+    const std::size_t k = kdop();
+    if (supports.size() != bvs.size() * k || first.supports.size() != supports.size() ||
+        last.supports.size() != supports.size())
+        throw std::invalid_argument("an interval needs " + std::to_string(k) + " supports per BV");
+    // The bound of the n-th BV, of its bump along axis a.
+    auto bound = [&](std::size_t n, const MotionInterval::Limits& most, auto&& bump) {
+        for (std::size_t d = 0; d < k; ++d) {
+            const std::size_t at = n * k + d;
+            auto scaled = [&](double x) { return d < 6 ? x : succ(norm_[d / 2] * x); };
+            supports[at] =
+                greatest_between(succ(first.supports[at] + scaled(most.error)),
+                                 succ(last.supports[at] + scaled(most.error)), bump(d, scaled), scaled(most.path));
+        }
+    };
+    // Whether by its bump alone it is near enough to both ends.
+    auto is_settled = [&](std::size_t n, double bump) {
+        const double* a = &first.supports[n * k];
+        const double* b = &last.supports[n * k];
+        double squares = 0;
+        for (std::size_t d = 0; d < 6; d += 2) {
+            const double width = std::max(a[d], b[d]) + std::max(a[d + 1], b[d + 1]);
+            squares += width * width;
+        }
+        // (4s − |F_b − F_a|)²/(16 s) above the greater end, along three axes; others are about as long.
+        const double room = enough * std::sqrt(squares / 12) * 16 * bump;
+        for (std::size_t d = 0; d < k; ++d) {
+            const double more = 4 * bump - std::abs(b[d] - a[d]);
+            if (!(more <= 0 || (more * more <= room && bump < infinite)))
+                return false;
+        }
+        return true;
+    };
+    std::vector<MotionInterval::Limits> limits; // of those that are not
+    std::vector<std::uint32_t> loose, place;    // BVs, and where they are listed
+    for (std::size_t n = 0; n < bvs.size(); ++n) {
+        MotionInterval::Limits most; // the greatest of each, which alone decide where all is well
+        for (const std::uint32_t j : bvh_.rest(bvs[n]).node) {
             const MotionInterval::Limits& of = motion.limits[j];
             most.bump = std::max(most.bump, of.bump);
             most.path = std::max(most.path, of.path);
@@ -126,20 +166,42 @@ void IntervalRefitter::operator()(const MotionInterval& motion, std::span<double
         }
         // Evaluation of a vertex of n influences rounds by (n + 8)u of what `error`, at least 2⁻⁴² of it, stands for.
         // So do displacements by (m + n + 16)u of four times it, m the targets; see MorphBoxes.
-        const double evaluation = 1 + bv.vertex_influences / 256.0 +
-                                  (morph.empty() ? 0 : static_cast<double>(morphs_.count(i) + bv.node.size()) / 256);
-        const double remainder = greatest_mean(bv, [&](std::size_t j) { return motion.limits[bv.node[j]].remainder; }) +
-                                 most.bend_error * evaluation,
-                     bump = most.bump, path = most.path, error = most.error * evaluation;
-        for (std::size_t d = 0; d < k; ++d) {
-            const std::size_t at = i * k + d;
-            auto scaled = [&](double x) { return d < 6 ? x : succ(norm[d / 2] * x); };
-            const double s = std::min(succ(bend_[at] + scaled(remainder)), scaled(bump));
-            supports[at] = greatest_between(succ(first_[at] + scaled(error)), succ(last_[at] + scaled(error)),
-                                            std::isnan(s) ? scaled(bump) : s, scaled(path));
+        const Bv& bv = bvh_.bvs[bvs[n]];
+        const double evaluation =
+            1 + bv.vertex_influences / 256.0 +
+            (motion.morph.empty() ? 0 : static_cast<double>(morphs_.count(bvs[n]) + bv.influence_count) / 256);
+        most.error *= evaluation;
+        most.bend_error *= evaluation;
+        if (is_settled(n, most.bump)) {
+            bound(n, most, [&](std::size_t, auto&& scaled) { return scaled(most.bump); });
+        } else {
+            limits.push_back(most);
+            loose.push_back(bvs[n]);
+            place.push_back(static_cast<std::uint32_t>(n));
         }
     }
-    merge_children(bvh_, k, supports);
+    std::vector<double> bend(loose.size() * k, 0.0);
+    if (!loose.empty() &&
+        !std::all_of(motion.bend.begin(), motion.bend.end(), is_zero)) // else places move along straight lines
+        refit(loose, motion.bend, bend);
+    if (const MotionInterval::Morph& morph = motion.morph; !morph.empty()) {
+        // (T e)″ = T″e + 2T′e′ + T e″, e the displacements
+        const MorphBoxes::Term terms[3] = {
+            {morph.at[0], motion.bend}, {morph.at[1], morph.slope}, {morph.at[2], morph.still}};
+        morphs_.add(terms, kdop_, loose, bend);
+    }
+    for (std::size_t i = 0; i < loose.size(); ++i) {
+        const RestBv bv = bvh_.rest(loose[i]);
+        const MotionInterval::Limits& most = limits[i];
+        const double remainder =
+            greatest_mean(bv, [&](std::size_t j) { return motion.limits[bv.node[j]].remainder; }) + most.bend_error;
+        bound(place[i], most, [&](std::size_t d, auto&& scaled) {
+            const double s = std::min(succ(bend[i * k + d] + scaled(remainder)), scaled(most.bump));
+            return std::isnan(s) ? scaled(most.bump) : s;
+        });
+    }
+    merge_children(bvs, supports);
+    return loose.size();
 }
 
 } // namespace cinch
