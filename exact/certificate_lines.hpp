@@ -14,6 +14,20 @@ std::string escaped(const std::string& text);
 /// The text that a reader of escaped(text) has.
 std::string as_shown(const std::string& text);
 
+/// "0x1.8p+0".
+inline std::string number_text(double value)
+{
+    std::string out;
+    if (std::signbit(value)) {
+        out = "-";
+        value = -value;
+    }
+    if (std::isfinite(value)) // std::to_chars leaves it out
+        out += "0x";
+    char digits[32];
+    return out.append(digits, std::to_chars(digits, digits + sizeof digits, value, std::chars_format::hex).ptr);
+}
+
 /// Builds one line of JSON in a buffer that is reused.
 class Line {
 public:
@@ -26,20 +40,7 @@ public:
     }
     Line& integer(std::size_t value) { return raw(std::to_string(value)); }
     Line& text(const std::string& value) { return raw(escaped(value)); }
-    Line& number(double value) // "0x1.8p+0"; std::to_chars leaves out 0x
-    {
-        text_ += '"';
-        if (std::signbit(value)) {
-            text_ += '-';
-            value = -value;
-        }
-        if (std::isfinite(value))
-            text_ += "0x";
-        char digits[32];
-        text_.append(digits, std::to_chars(digits, digits + sizeof digits, value, std::chars_format::hex).ptr);
-        text_ += '"';
-        return *this;
-    }
+    Line& number(double value) { return raw("\"").raw(number_text(value)).raw("\""); }
     template <class Range, class Write> Line& array(const Range& range, Write&& write)
     {
         text_ += '[';

@@ -12,12 +12,14 @@ namespace {
 
 constexpr std::string_view format = "cinch times 1";
 
-std::string hash_of_method(const Claim& claim)
+std::string hash_of_method(const Claim& claim, std::span<const double> any_weights)
 {
     Sha256 hash;
     hash.add_text(format);
     hash.add_text(name_of(claim.methods));
     hash.add_text(std::to_string(claim.kdop));
+    for (const double weight : any_weights)
+        hash.add_text(number_text(weight));
     for (const std::string& part : claim.missing)
         hash.add_text(as_shown(part));
     return hash.hex();
@@ -91,10 +93,14 @@ struct TimeCertificateWriter::Parts {
 };
 
 TimeCertificateWriter::TimeCertificateWriter(const DeformableSurface& surface, const Bvh& bvh, const Claim& claim,
-                                             const Character* character, std::size_t clips, LineSink sink)
+                                             const Character* character, std::optional<Enclosure> any_weights,
+                                             std::size_t clips, LineSink sink)
     : parts_(new Parts(bvh.bvs.size() * static_cast<std::size_t>(claim.kdop), static_cast<std::size_t>(claim.kdop),
                        clips, std::move(sink)))
 {
+    std::vector<double> limits;
+    if (any_weights)
+        limits = {any_weights->low, any_weights->high};
     Line& line = parts_->line;
     line.raw("{\"certificate\":\"").raw(format).raw("\",\"method\":\"").raw(cinch::name_of(claim.methods));
     line.raw("\",\"kdop\":").integer(static_cast<std::size_t>(claim.kdop));
@@ -103,10 +109,10 @@ TimeCertificateWriter::TimeCertificateWriter(const DeformableSurface& surface, c
     line.raw(",\"nodes\":").integer(surface.weights.node_count).raw(",\"bvs\":").integer(bvh.bvs.size());
     line.raw(",\"bones\":").integer(character ? character->bones.size() : 0);
     line.raw(",\"targets\":").integer(character ? character->targets.size() : 0);
-    line.raw(",\"clips\":").integer(clips);
+    line.raw(",\"weights\":").numbers(limits).raw(",\"clips\":").integer(clips);
     line.raw(claim.missing.empty() ? ",\"partial\":false" : ",\"partial\":true").raw(",\"missing\":");
     line.array(claim.missing, [&](const std::string& part) { line.text(part); });
-    hash_surface(surface, hash_of_method(claim), line);
+    hash_surface(surface, hash_of_method(claim, limits), line);
     line.raw("}").end();
     write_body(surface, bvh, line);
     if (!character)

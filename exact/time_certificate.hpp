@@ -11,7 +11,8 @@ namespace cinch::exact {
 /// without this program. Doubles and hashes are as in CertificateWriter's. In this order:
 ///
 ///   {"certificate":"cinch times 1", "method", "kdop", "vertices", "triangles", "nodes", "bvs", "bones", "targets",
-///    "clips", "partial", "missing", "sha256": {"positions", "triangles", "weights", "method"}}
+///    "weights": none, or the least and the greatest that any morph target may have at any time, "clips", "partial",
+///    "missing", "sha256": {"positions", "triangles", "weights", "method"}}
 ///   per vertex, triangle, BV  as in CertificateWriter's
 ///   per bone                  {"bone", "parent": before it, or -1, "translation", "rotation": x, y, z, w, "scale",
 ///                              "matrix": empty, or 16 numbers by columns, which count where no curve moves the bone}
@@ -29,13 +30,16 @@ namespace cinch::exact {
 ///
 /// The statement: with weights w of the vertex's simulation nodes, T_j(t) the product of the transforms of the bones
 /// above joint j, each translation · rotation · scale by glTF 2.0's interpolation in real arithmetic, and j's bind, and
-/// a_i(t) weights of targets, Σ w_j T_j(t) (rest + Σ a_i(t) d_i) lies within the bounds at all real times of the closed
-/// interval. The hash of motion is over bones, joints, targets and every clip, in that order, as written.
+/// a_i(t) weights of targets, or any within the limits that the header has, Σ w_j T_j(t) (rest + Σ a_i(t) d_i) lies
+/// within the bounds at all real times of the closed interval. The hash of motion is over bones, joints, targets and
+/// every clip, in that order, as written.
 class TimeCertificateWriter {
 public:
-    /// `character`: none of clips that are frames. All must stay alive; `claim`'s clip, frames and shape are not used.
+    /// `character`: none of clips that are frames. `any_weights`: of all morph targets at all times, instead of what
+    /// file and clips say. All must stay alive; `claim`'s clip, frames and shape are not used.
     TimeCertificateWriter(const DeformableSurface& surface, const Bvh& bvh, const Claim& claim,
-                          const Character* character, std::size_t clips, LineSink line);
+                          const Character* character, std::optional<Enclosure> any_weights, std::size_t clips,
+                          LineSink line);
     ~TimeCertificateWriter();
 
     /// Begins a clip of so many intervals from `first_s` to `last_s`, of a character or of frames.

@@ -8,6 +8,17 @@
 #include "experiments/report/number.hpp"
 
 namespace cinch {
+namespace {
+
+// Of the weights that morph targets may have.
+std::optional<exact::Enclosure> limits_of(const TimedBody& body)
+{
+    if (!body.any_weights)
+        return {};
+    return exact::Enclosure{body.any_weights->least, body.any_weights->greatest};
+}
+
+} // namespace
 
 exact::TimeVerdict prove(const TimedBody& body, const TimedClip& clip, const Bvh& bvh, int kdop,
                          std::span<const BakedInterval> intervals)
@@ -16,9 +27,8 @@ exact::TimeVerdict prove(const TimedBody& body, const TimedClip& clip, const Bvh
     std::span<const MorphTarget> targets = body.targets();
     if (body.any_weights) {
         targets = body.any_weights->character->targets;
-        enclosure = std::make_unique<exact::ClipEnclosure>(
-            *body.any_weights->character, *clip.animation,
-            exact::Enclosure{body.any_weights->least, body.any_weights->greatest});
+        enclosure =
+            std::make_unique<exact::ClipEnclosure>(*body.any_weights->character, *clip.animation, limits_of(body));
     } else if (clip.animation)
         enclosure = std::make_unique<exact::ClipEnclosure>(*body.character, *clip.animation);
     else
@@ -33,13 +43,12 @@ exact::TimeVerdict prove(const TimedBody& body, const TimedClip& clip, const Bvh
 TimeProofFile::TimeProofFile(const std::string& name, const TimedBody& body, const Bvh& bvh, Methods methods, int kdop)
     : body_(body), file_(name),
       writer_(body.input.surface, bvh, {methods, kdop, RestShape::aabb, "", 0, body.input.missing},
-              body.character.get(), body.clips.size(), [this](std::string_view text) {
+              body.any_weights ? body.any_weights->character.get() : body.character.get(), limits_of(body),
+              body.clips.size(), [this](std::string_view text) {
                   throw_if_interrupted(); // then none is written
                   file_.line(text);
               })
 {
-    if (body.any_weights)
-        throw InputError("--certificate is of the weights that clips give morph targets; not with --morphs");
 }
 
 void TimeProofFile::add(const TimedClip& clip, std::span<const BakedInterval> intervals)

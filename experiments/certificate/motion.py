@@ -5,7 +5,7 @@ that is 0 is None."""
 import bisect
 from fractions import Fraction
 
-from certificate.interval import BITS, ZERO, of_double, of_ratio
+from certificate.interval import BITS, ZERO, hull, of_double, of_ratio
 from certificate.path import jets, rotation, rotation_jets
 
 NOTHING = [0] * 12, [0] * 12
@@ -117,10 +117,11 @@ class Bone:
 
 class Character:
     """Bones, of which parents come first; joints: (bone, inverse bind). `weights`: of morph targets, where no curve
-    sets them."""
+    sets them, or none of them: `limits`, the least and the greatest of any at any time."""
 
-    def __init__(self, bones, joints, weights):
+    def __init__(self, bones, joints, weights, limits=()):
         self.bones, self.weights = bones, weights
+        self.any = hull([of_double(x) for x in limits]) if limits else None
         self.joints = [(bone, affine(bind)) for bone, bind in joints]
         self.constants = [bone.constant() for bone in bones]
 
@@ -134,7 +135,7 @@ class CharacterClip:
         self.character, self.curves, self.morphs = character, curves, morphs
         self.every = [c for of in curves.values() for c in of.values()] + [c for _, c in morphs]
         self.keys = sorted({t for c in self.every for t in c.times})
-        self.displaces = bool(morphs) or any(character.weights)
+        self.displaces = bool(morphs) or any(character.weights) or character.any is not None
 
     def on(self, piece, nodes):
         """Of these simulation nodes, None for others. ZeroDivisionError where a quaternion may pass 0."""
@@ -172,6 +173,8 @@ class CharacterClip:
         return Enclosed(*of, self.weights_on(piece) if self.displaces else None)
 
     def weights_on(self, piece):
+        if self.character.any:  # with each set of weights by itself a vertex moves as its simulation nodes do
+            return [(self.character.any,) * 3 + (ZERO, ZERO)] * len(self.character.weights)
         out = [(of_double(w),) * 3 + (ZERO, ZERO) for w in self.character.weights]
         for first_target, curve in self.morphs:
             for i, controls in enumerate(curve.controls(piece)):

@@ -11,8 +11,8 @@ from certificate.times import IntervalProof, Vertices
 from certificate.values import Rejected, double, in_order, listed, plain, require, shown, text, whole
 
 FORMAT = "cinch times 1"
-HEADER = {"certificate", "method", "kdop", "vertices", "triangles", "nodes", "bvs", "bones", "targets", "clips",
-          "partial", "missing", "sha256"}
+HEADER = {"certificate", "method", "kdop", "vertices", "triangles", "nodes", "bvs", "bones", "targets", "weights",
+          "clips", "partial", "missing", "sha256"}
 INTERPOLATIONS = ("STEP", "LINEAR", "CUBICSPLINE")
 MOVES = {"translation": 3, "rotation": 4, "scale": 3}
 MOST = 1 << 31
@@ -26,7 +26,12 @@ class TimedHeader(Header):
         pass  # of rest boxes, which nothing here needs
 
     def hashed_texts(self, record):
-        return FORMAT, record["method"], str(record["kdop"]), *self.missing
+        limits = listed(record["weights"], None, "weights")
+        require(len(limits) in (0, 2), "weights are {} limits", len(limits))
+        self.any_weights = [double(x) for x in limits]
+        require(self.any_weights == sorted(self.any_weights), "the greatest weight is below the least")
+        require(not limits or self.targets, "weights without morph targets")
+        return FORMAT, record["method"], str(record["kdop"]), *limits, *self.missing
 
 
 class MotionRecords:
@@ -88,7 +93,7 @@ class TimedChecker:
             target = Target(record, header.vertices)
             self.targets.append((target.vertices, target.by))
         require(bones or not header.targets, "morph targets without bones")
-        return Character(bones, joints, weights) if bones else None
+        return Character(bones, joints, weights, header.any_weights) if bones else None
 
     def times(self, record, what):
         times = doubles(record["times"], None, "times")
@@ -181,5 +186,7 @@ class TimedChecker:
         return last
 
     def verdict(self):
+        limits = self.header.any_weights
         return (f"{partial(self.header)}{self.proven} bounds over {self.intervals} intervals of time proven, "
-                f"{self.infinite} infinite")
+                f"{self.infinite} infinite" +
+                (f", of morph targets with weights from {limits[0]:g} to {limits[1]:g}" if limits else ""))

@@ -151,6 +151,10 @@ def sealed(records):
     first, last = records[0], records[-1]
     first.update(vertices=count["vertex"], triangles=count["triangle"], bvs=count["bv"], clips=count["clip"])
     first["sha256"].update((name, sha[name].hexdigest()) for name in ("positions", "triangles", "weights"))
+    method = hashlib.sha256()
+    for part in (first["certificate"], first["method"], str(first["kdop"]), *first["weights"], *first["missing"]):
+        method.update(b"%d:%b" % (len(part.encode()), part.encode()))
+    first["sha256"]["method"] = method.hexdigest()
     last.update(clips=count["clip"], infinite=bounds.count("inf"), proven=len(bounds) - bounds.count("inf"))
     last["sha256"] = {"motion": sha["motion"].hexdigest()}
     return records
@@ -294,6 +298,32 @@ def limits():
         assert Fraction(floor_units(x, 200), 1 << 200) <= Fraction(x) < Fraction(floor_units(x, 200) + 1, 1 << 200)
 
 
+def any_weights(folder, name, proof):
+    """Morph targets with any weights of a range: no wider range is proven by the same bounds, nor nearer bounds."""
+    for limits in ("any", "-0.5..1.5"):
+        made = run("bake", name, "--morphs", limits, "--leaf", "8", "--whole", "--prove", "--certificate", proof)
+        assert made.returncode == 0, made.stdout
+        records = read(proof)
+        assert reason(folder, records) is None, reason(folder, records)
+        low, high = (float.fromhex(x) for x in records[0]["weights"])
+        assert (low, high) == ((0, 1) if limits == "any" else (-0.5, 1.5))
+        for wider in ((low - 2, high), (low, high + 2)):
+            changed = json.loads(json.dumps(records))
+            changed[0]["weights"] = [x.hex() for x in wider]
+            assert "SHA-256 of the method" in reason(folder, changed)
+            assert "is not shown to stay" in reason(folder, sealed(changed)), wider
+        for weights in ([], [(1.0).hex(), (0.0).hex()], [(0.0).hex()], ["nan"] * 2):
+            changed = json.loads(json.dumps(records))
+            changed[0]["weights"] = weights
+            assert reason(folder, sealed(changed)) if weights else "SHA-256 of the method" in reason(folder, changed)
+        size = max(abs(float.fromhex(x)) for r in records if "bounds" in r for x in r["bounds"])
+        for d in range(6):
+            changed = json.loads(json.dumps(records))
+            most = max((r for r in changed if "bounds" in r), key=lambda r: float.fromhex(r["bounds"][d]))
+            most["bounds"][d] = (float.fromhex(most["bounds"][d]) - 0.25 * size).hex()
+            assert reason(folder, sealed(changed)), "bound %d far inside the surface is accepted" % d
+
+
 arithmetic()
 limits()
 with tempfile.TemporaryDirectory() as folder:
@@ -312,6 +342,7 @@ with tempfile.TemporaryDirectory() as folder:
             run("bake", name, "--whole", "--leaf", "2", "--sabotage", kind, "--certificate", proof)
             wrong = subprocess.run([sys.executable, checker, proof], capture_output=True, text=True)
             assert wrong.returncode == 1 and "beyond the bound" in wrong.stdout, (kind, wrong.stdout, wrong.stderr)
+    any_weights(folder, face(folder), proof)
     run("verify", name, "--times", "all", "--certificate", proof)
     assert reason(folder, read(proof)) is None
     for name, kdop in ((spin(folder), "14"), (wave(folder), "6"), (breath(folder), "6")):

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
-#include "experiments/report/view.hpp"
 #include "experiments/embedded.hpp"
+#include "experiments/report/view.hpp"
 
 namespace cinch {
 namespace {

@@ -190,7 +190,8 @@ public:
 
     /// supports[bv·k + d], d as in axes_of(k): at every real time of [t0_s, t1_s], both included, which lie between the
     /// animation's first_s and last_s. The half diagonals of boxes exceed those of the bounds at single times by
-    /// at most the share `tolerance`, where halving intervals reaches it. Throws std::invalid_argument for times and sizes that do not fit.
+    /// at most the share `tolerance`, where halving intervals reaches it. Throws std::invalid_argument for times and
+    /// sizes that do not fit.
     void operator()(double t0_s, double t1_s, std::span<double> supports, double tolerance = 0.01);
 
 private:
