@@ -17,8 +17,8 @@
 namespace cinch {
 
 /// body(first, last) on pieces of [0, count), in parallel, by the thread's executor (cinch/environment.hpp) or else
-/// oneTBB, or in a build without it (CINCH_TBB) as one piece; every piece in the *caller's* floating-point environment.
-/// TBB would otherwise run tasks, on the calling thread too, in the environment in which its arena was created long ago.
+/// oneTBB, or in a build without it as one piece; every piece in the *caller's* floating-point environment. TBB would
+/// otherwise run tasks, on the calling thread too, in the environment in which its arena was created long ago.
 template <class Body> void parallel_blocks(std::size_t count, std::size_t grain, const Body& body)
 {
     if (count <= grain) {
