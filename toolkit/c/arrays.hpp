@@ -18,11 +18,13 @@ namespace cinch::c {
 static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(AffineMap) == 12 * sizeof(double) &&
               sizeof(Aabb) == 6 * sizeof(double) && sizeof(Triangle) == 3 * sizeof(std::uint32_t));
 
-/// What is given by a pointer that must not be null.
+/// What is given by a pointer that must not be null, and aligned.
 template <class T> T& given(T* pointer, const char* name)
 {
     if (!pointer)
         throw std::invalid_argument(std::string(name) + " is null");
+    if (reinterpret_cast<std::uintptr_t>(pointer) % alignof(T) != 0)
+        throw std::invalid_argument(std::string(name) + " is not aligned to " + std::to_string(alignof(T)) + " bytes");
     return *pointer;
 }
 
@@ -34,8 +36,6 @@ template <class Row, class T> auto array(T* pointer, std::size_t rows, const cha
     if (rows == 0)
         return std::span<Element>();
     given(pointer, name);
-    if (reinterpret_cast<std::uintptr_t>(pointer) % alignof(T) != 0)
-        throw std::invalid_argument(std::string(name) + " is not aligned to " + std::to_string(alignof(T)) + " bytes");
     if (rows > static_cast<std::size_t>(std::numeric_limits<std::ptrdiff_t>::max()) / sizeof(Row))
         throw std::invalid_argument(std::string(name) + " cannot have " + std::to_string(rows) + " rows");
     return std::span<Element>(reinterpret_cast<Element*>(pointer), rows);

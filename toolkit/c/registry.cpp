@@ -43,9 +43,9 @@ Fault fault_of(const Registry& all, std::uint64_t bits, const std::string& wante
 {
     const std::uint64_t number = bits >> 8 & (most_handles - 1), kind = bits & 0xff;
     if (bits == 0)
-        return {CINCH_ERROR_HANDLE, "the handle of a " + wanted + " is needed, not null"};
+        return {CINCH_ERROR_HANDLE, wanted + " is needed, not null"};
     if (bits >> 48 != mark || number == 0 || number > all.given || kind >= names.size())
-        return {CINCH_ERROR_HANDLE, "the handle of a " + wanted + " is needed, and this is none"};
+        return {CINCH_ERROR_HANDLE, wanted + " is needed, and this is none"};
     return {CINCH_ERROR_HANDLE, std::string("the handle of a ") + names[kind] + " was freed"};
 }
 
@@ -72,7 +72,7 @@ std::shared_ptr<void> object_of(const void* handle, Kind kind)
     const std::shared_lock lock(all.mutex);
     const auto found = all.objects.find(bits);
     if (found == all.objects.end())
-        throw fault_of(all, bits, name_of(kind));
+        throw fault_of(all, bits, std::string("the handle of a ") + name_of(kind));
     const std::size_t own = bits & 0xff;
     if (own != static_cast<std::size_t>(kind))
         throw Fault(CINCH_ERROR_HANDLE, std::string("the handle of a ") + name_of(kind) +
@@ -89,7 +89,7 @@ void free_handle(const void* handle)
     const std::unique_lock lock(all.mutex);
     const auto found = all.objects.find(bits_of(handle));
     if (found == all.objects.end())
-        throw fault_of(all, bits_of(handle), "object");
+        throw fault_of(all, bits_of(handle), "a handle");
     last = std::move(found->second);
     all.objects.erase(found);
 }

@@ -13,6 +13,8 @@ namespace {
 using namespace cinch;
 using namespace cinch::c;
 
+constexpr std::uint32_t most_nodes = 1 << 24;
+
 [[noreturn]] void refuse(const std::string& why) { throw std::invalid_argument("surface: " + why); }
 
 template <class T> std::vector<T> copy_of(std::span<const T> values) { return {values.begin(), values.end()}; }
@@ -73,6 +75,9 @@ TriangleMesh mesh_of(const cinch_surface_arrays& in)
 Influences influences_of(const cinch_surface_arrays& in)
 {
     require_indexable(in.weight_count, "weights");
+    if (in.node_count > most_nodes) // whose frames have gigabytes: what no array stands behind must not take memory
+        refuse("there are " + std::to_string(in.node_count) + " simulation nodes, and can be " +
+               std::to_string(most_nodes));
     const auto node = array<std::uint32_t>(in.weight_node, in.weight_count, "weight_node");
     const auto weight = array<double>(in.weight, in.weight_count, "weight");
     const auto row = checked_rows(in.weight_row, in.vertex_count, node, in.node_count, "weight");

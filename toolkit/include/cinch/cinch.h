@@ -129,7 +129,7 @@ typedef struct cinch_surface_arrays {
     const uint32_t* weight_node; ///< (weight_count), below node_count
     const double* weight;        ///< (weight_count)
     size_t weight_count;         ///< below 2^32
-    uint32_t node_count;         ///< simulation nodes
+    uint32_t node_count;         ///< simulation nodes, 2^24 at most
     const double* rest_maps;     ///< (node_count, 12) or null: the pose in which triangles are grouped, for parts with
                                  ///< rest spaces of their own. No bound depends on it, only how tight they are
     const uint32_t* target_row;  ///< (target_count + 1), from 0 to displacement_count, or null without targets
