@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""fuzz.py LIBRARY HEADERS DATA SECONDS [SEED]: for so long (times CINCH_TEST_SHARE) random calls of all functions of the library for C: right ones, and ones
-with wrong, null and stale handles, null pointers, numbers of rows that do not fit, options that are none, indices out of
-range and what is no number. Each must return a status, and what fails must say why; a crash is what is looked for.
+"""fuzz.py LIBRARY HEADERS DATA SECONDS [SEED]: for so long (times CINCH_TEST_SHARE) random calls of all functions of the
+library for C: right ones, and ones with wrong, null and stale handles, null pointers, numbers of rows that do not fit,
+options that are none, indices out of range and what is no number. Each must return a status, and what fails must say
+why; a crash is what is looked for.
 
 What C cannot see is kept from it: arrays have the rows that are said, or more."""
 import collections
@@ -128,9 +129,10 @@ def new_surface():
             field = chance.choice(list(arrays.kept))
             values = arrays.kept[field]
             place = chance.randrange(len(values))
-            values[place] = chance.choice(ODD) if values._type_ is ctypes.c_double else chance.choice([0, 1, 7, 2**32 - 1])
+            values[place] = chance.choice(ODD if values._type_ is ctypes.c_double else [0, 1, 7, 2**32 - 1])
         elif kind == 1:
-            field = chance.choice(["vertex_count", "triangle_count", "weight_count", "node_count", "displacement_count"])
+            field = chance.choice(["vertex_count", "triangle_count", "weight_count", "node_count",
+                                   "displacement_count"])
             most = [2**32 - 1, 2**24 + 1, 500] if field == "node_count" else [2**63]
             setattr(arrays, field, chance.choice([0, 1, getattr(arrays, field) // 2] + most))
         else:
@@ -167,7 +169,8 @@ def look_at_surface():
     called("cinch_surface_get_weights", surface, pointer(array(ctypes.c_uint32, n + 1)), count(n + 1),
            pointer(array(ctypes.c_uint32, w)), pointer(array(ctypes.c_double, w)), count(w))
     called("cinch_surface_evaluate", surface, pointer(array(ctypes.c_double, 12 * s.nodes)), count(s.nodes),
-           pointer(array(ctypes.c_double, s.targets)), count(s.targets), pointer(array(ctypes.c_double, 3 * n)), count(n))
+           pointer(array(ctypes.c_double, s.targets)), count(s.targets), pointer(array(ctypes.c_double, 3 * n)),
+           count(n))
 
 
 def new_bvh(surface=None):
@@ -299,15 +302,17 @@ def characters():
     character, clips, surface = handle("character"), ctypes.c_size_t(), ctypes.c_void_p()
     if called("cinch_character_get_surface", character, ctypes.byref(surface), ctypes.byref(clips)) == 0:
         handles["surface"].append(surface.value)
-        handles["surface"].pop(0) if len(handles["surface"]) > 6 and called("cinch_free", handles["surface"][0]) == 0 else 0
+        if len(handles["surface"]) > 6:
+            called("cinch_free", handles["surface"].pop(0))
     clip = chance.choice([0, 0, 0, 1, 2**64 - 1, 2**63])
     called("cinch_character_get_clip", character, clip, pointer(c.structures["cinch_clip_info"]()))
     frames, clip_of = ctypes.c_size_t(), ctypes.c_void_p()
     if called("cinch_character_sample", character, clip, chance.choice([1, 10, 0, -1, 1e-300, 1e300, float("nan")]),
               ctypes.byref(clip_of), ctypes.byref(frames)) == 0:
         time_s = ctypes.c_double()
-        called("cinch_clip_get_frame", handle("clip", 2) or clip_of, chance.choice([0, max(frames.value - 1, 0), 2**63]),
-               pointer(time_s), pointer(array(ctypes.c_double, 12 * 100)), count(4), None, count(0))
+        frame = chance.choice([0, max(frames.value - 1, 0), 2**63])
+        called("cinch_clip_get_frame", handle("clip", 2) or clip_of, frame, pointer(time_s),
+               pointer(array(ctypes.c_double, 12 * 100)), count(4), None, count(0))
         called("cinch_free", clip_of)
     bvh = new_bvh(surface.value) if surface.value and one_in(2) else handle("bvh")
     at = options("cinch_refit_options")
@@ -371,8 +376,8 @@ def library():
     free()
 
 
-ACTIONS = [new_surface, read_surface, look_at_surface, new_bvh, look_at_bvh, new_refitter, refit, crowd, new_collider, collide, swept,
-           characters, scenes, baked, library, free]
+ACTIONS = [new_surface, read_surface, look_at_surface, new_bvh, look_at_bvh, new_refitter, refit, crowd, new_collider,
+           collide, swept, characters, scenes, baked, library, free]
 print(f"seed {seed}", flush=True)
 end, rounds = time.monotonic() + float(SECONDS) * float(os.environ.get("CINCH_TEST_SHARE", 1)), 0
 while time.monotonic() < end:

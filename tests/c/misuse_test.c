@@ -262,7 +262,7 @@ static void test_colliders(void)
     WORKS(cinch_surface_from_arrays(&in, &other));
     WORKS(cinch_bvh_build(other, 16, 16, 0, &bvh));
     WORKS(cinch_collider_new(NULL, &collider));
-    GIVES(CINCH_ERROR_ORDER, cinch_collider_query(collider, 0, &count), "Collider: a query ");
+    GIVES(CINCH_ERROR_ORDER, cinch_collider_query(collider, 0, &count), "Collider: a query before the first update()");
     GIVES(CINCH_ERROR_ARGUMENT, cinch_collider_add(collider, surface, bvh, NULL, &id),
           "Collider::add: the tree is that of another surface");
     own.kdop = 14;
@@ -281,7 +281,8 @@ static void test_colliders(void)
     frames[1].map_count = 1;
     GIVES(CINCH_ERROR_ARGUMENT, cinch_collider_update(collider, frames, 2),
           "refit: one transform per simulation node is needed");
-    GIVES(CINCH_ERROR_ORDER, cinch_collider_query(collider, 0, &count), "Collider: a query ");
+    GIVES(CINCH_ERROR_ORDER, cinch_collider_query(collider, 0, &count),
+          "Collider: a query after an update() that threw");
     frames[1].map_count = 2;
     WORKS(cinch_collider_update(collider, frames, 2));
     GIVES(CINCH_ERROR_ARGUMENT, cinch_collider_query(collider, 3, &count), "there is no query 3");

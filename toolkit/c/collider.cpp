@@ -31,7 +31,6 @@ struct Bodies {
     LazyOptions options;
     std::map<BodyId, Body> of;
     Collider collider; // ends before what it refers to
-    bool frame = false;
     std::vector<TrianglePair> pairs;
     mutable std::atomic<bool> busy{false};
 
@@ -49,10 +48,15 @@ struct Bodies {
         return bvh ? collider.add(*bvh, surface, mine) : collider.add(surface, mine);
     }
 
-    void changed()
+    void update(std::span<const cinch_body_frame> frames);
+
+    // Queries say so until the next update().
+    void forget_frame()
     {
-        frame = false;
-        pairs.clear();
+        try {
+            collider.update({});
+        } catch (const std::invalid_argument&) { // no frame per body
+        }
     }
 };
 
@@ -79,6 +83,23 @@ Given checked(const cinch_body_frame& in, const Body& body)
             array<double>(in.weights, in.weight_count, "weights")};
 }
 
+void Bodies::update(std::span<const cinch_body_frame> frames)
+{
+    if (frames.size() != of.size())
+        throw std::invalid_argument("Collider::update: one frame per body is needed");
+    std::vector<BodyFrame> copied;
+    auto body = of.begin();
+    for (const cinch_body_frame& frame : frames) {
+        Body& to = (body++)->second;
+        const Given from = checked(frame, to);
+        copy_to(from.maps, to.maps);
+        copy_to(from.positions, to.positions);
+        copy_to(from.weights, to.weights);
+        copied.push_back({to.maps, to.positions, to.weights});
+    }
+    collider.update(copied);
+}
+
 } // namespace
 
 cinch_status cinch_collider_new(const cinch_body_options* options, cinch_collider** collider)
@@ -101,7 +122,7 @@ cinch_status cinch_collider_add(cinch_collider* collider, const cinch_surface* s
             throw std::invalid_argument("Collider::add: the tree is that of another surface");
         BodyId& out = given(id, "id");
         out = all->add(*of->surface, *of->targets, tree ? &tree->bvh : nullptr, own);
-        all->changed();
+        all->pairs.clear();
         try {
             all->of[out] = {of, tree, !of->targets->empty(), {}, {}, {}};
         } catch (...) { // nothing keeps what it refers to
@@ -117,7 +138,7 @@ cinch_status cinch_collider_remove(cinch_collider* collider, uint32_t id)
         const auto all = get<Bodies>(collider);
         const InUse use(all->busy, Kind::collider);
         all->collider.remove(id);
-        all->changed();
+        all->pairs.clear();
         all->of.erase(id);
     });
 }
@@ -152,22 +173,13 @@ cinch_status cinch_collider_update(cinch_collider* collider, const cinch_body_fr
     return call([&] {
         const auto all = get<Bodies>(collider);
         const InUse use(all->busy, Kind::collider);
-        all->changed();
-        if (count != all->of.size())
-            throw std::invalid_argument("Collider::update: one frame per body is needed");
-        const auto in = array<cinch_body_frame>(frames, count, "frames");
-        std::vector<BodyFrame> copied;
-        auto body = all->of.begin();
-        for (const cinch_body_frame& frame : in) {
-            const Given from = checked(frame, body->second);
-            Body& to = (body++)->second;
-            copy_to(from.maps, to.maps);
-            copy_to(from.positions, to.positions);
-            copy_to(from.weights, to.weights);
-            copied.push_back({to.maps, to.positions, to.weights});
+        all->pairs.clear();
+        try {
+            all->update(array<cinch_body_frame>(frames, count, "frames"));
+        } catch (...) {
+            all->forget_frame();
+            throw;
         }
-        all->collider.update(copied);
-        all->frame = true;
     });
 }
 
@@ -181,8 +193,6 @@ cinch_status cinch_collider_query(cinch_collider* collider, int32_t query, size_
             throw std::invalid_argument("there is no query " + std::to_string(query));
         constexpr Query queries[] = {Query::pairs, Query::any, Query::leaves};
         all->pairs.clear();
-        if (!all->frame) // where update() was not even called
-            throw std::logic_error("Collider: a query without a frame; call update() with one frame per body first");
         all->collider.find(queries[query], [&](std::span<const TrianglePair> some) {
             const bool one = query == CINCH_QUERY_ANY;
             all->pairs.insert(all->pairs.end(), some.begin(), one && !some.empty() ? some.begin() + 1 : some.end());

@@ -6,7 +6,7 @@
 /// cinch from C99 and whatever calls C: proven bounds of deforming surfaces, trees of them, intersections of bodies.
 ///
 /// **Errors.** Functions return a ::cinch_status; what failed says why by cinch_error_message(), in the sentences of
-/// the C++ library's exceptions. No exception and no signal leaves them: null pointers, handles that were freed or are
+/// the C++ library's exceptions. No exception leaves them: null pointers, handles that were freed or are
 /// of another kind, numbers of elements that do not fit, indices out of range and what is no number are errors. What is
 /// not said to stand in such a case has no defined content then. (Whether an array has as many elements as is said,
 /// C cannot check.)
@@ -28,8 +28,8 @@
 /// box is 6 doubles: least x, y, z, greatest x, y, z. What is not finite in maps and weights of a frame gives infinite
 /// supports, never NaN.
 ///
-/// **Structures** that are all 0 are the defaults, and so is a null pointer to one. `count` and `size` say what an
-/// array needs. Until 1.0 their layout, like all else here, stays within 0.x.
+/// **Options** that are all 0 are the defaults, and so is a null pointer to them. Until 1.0 their layout, like all else
+/// here, stays within 0.x.
 
 #include <stddef.h>
 #include <stdint.h>
