@@ -48,7 +48,7 @@ extern "C" {
 
 /// What became of a call.
 typedef enum cinch_status {
-    CINCH_OK = 0,
+    CINCH_OK = 0,             ///< it did what it says
     CINCH_ERROR_INPUT = 1,    ///< a fault of a file or of its content: file, place and reason
     CINCH_ERROR_ARGUMENT = 2, ///< sizes, numbers, options or pointers that do not fit
     CINCH_ERROR_HANDLE = 3,   ///< no handle, a freed one, or one of another kind
@@ -332,9 +332,16 @@ typedef enum cinch_query {
 
 /// What the queries of a frame did.
 typedef struct cinch_query_counts {
-    uint64_t body_pairs, box_tests, leaf_pairs, triangle_tests; ///< pairs of bodies, BVs, leaves, triangles
-    uint64_t in_double, in_exact;              ///< of the last, decided in doubles and in exact arithmetic
-    uint64_t bounds, leaves, vertices, merged; ///< BVs bounded, leaves and vertices deformed, BVs merged
+    uint64_t body_pairs;     ///< whose roots overlap
+    uint64_t box_tests;      ///< pairs of BVs
+    uint64_t leaf_pairs;     ///< whose k-DOPs overlap
+    uint64_t triangle_tests; ///< pairs of triangles whose boxes overlap
+    uint64_t in_double;      ///< of these, decided in doubles
+    uint64_t in_exact;       ///< and in exact arithmetic; all others in floats
+    uint64_t bounds;         ///< BVs bounded by the methods
+    uint64_t leaves;         ///< deformed
+    uint64_t vertices;       ///< of these leaves
+    uint64_t merged;         ///< BVs bounded by their children
 } cinch_query_counts;
 
 /// Of options that bodies have by default.

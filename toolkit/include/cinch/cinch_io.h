@@ -25,8 +25,9 @@ CINCH_API cinch_status cinch_surface_read(const char* mesh, const char* weights,
 
 /// A clip of a character.
 typedef struct cinch_clip_info {
-    const char* name;       ///< as the file has it; while the handle that was asked is not freed
-    double first_s, last_s; ///< times of its first and its last key
+    const char* name; ///< as the file has it; while the handle that was asked is not freed
+    double first_s;   ///< time of its first key
+    double last_s;    ///< and of its last one
 } cinch_clip_info;
 /// The pose of the file, as a clip that moves nothing.
 #define CINCH_REST ((size_t)-1)
@@ -59,9 +60,10 @@ CINCH_API cinch_status cinch_clip_bounder_bound(cinch_clip_bounder* bounder, con
 
 /// Where a scene is.
 typedef struct cinch_simulation_state {
-    size_t bodies;        ///< of the scene
-    size_t frame, frames; ///< at present, from 0; and how many the scene asks for
-    double time_s;        ///< since its start
+    size_t bodies; ///< of the scene
+    size_t frame;  ///< at present, from 0
+    size_t frames; ///< that the scene asks for
+    double time_s; ///< since its start
 } cinch_simulation_state;
 
 /// A scene's file (JSON).
@@ -81,12 +83,15 @@ CINCH_API cinch_status cinch_simulation_get_maps(const cinch_simulation* simulat
 
 /// A clip of a file of bounds.
 typedef struct cinch_baked_clip {
-    const char *input, *name; ///< while the handle is not freed
-    const char* statement;    ///< what the bounds contain
-    double first_s, last_s;   ///< of all intervals
-    size_t intervals, bvs;    ///< of each interval the first BVs of the tree
-    int32_t kdop;             ///< of the bounds
-    int32_t partial;          ///< 1: parts of the input were left out, or the run was not complete
+    const char* input;     ///< the file of which it is; like all texts here while the handle is not freed
+    const char* name;      ///< of the clip
+    const char* statement; ///< what the bounds contain
+    double first_s;        ///< when its intervals begin
+    double last_s;         ///< when they end
+    size_t intervals;      ///< of time
+    size_t bvs;            ///< of each interval, the first ones of the tree
+    int32_t kdop;          ///< of the bounds
+    int32_t partial;       ///< 1: parts of the input were left out, or the run was not complete
 } cinch_baked_clip;
 
 /// What `cinch bake FILE --json` wrote. Other records are passed over.
