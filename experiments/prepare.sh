@@ -7,7 +7,7 @@ packages=(g++ cmake ninja-build ccache git gnuplot-nox catch2 libbenchmark-dev l
   libmeshoptimizer-dev libmpfi-dev libmpfr-dev librapidcheck-dev libtbb-dev lrslib nettle-dev nlohmann-json3-dev
   python3 python3-jsonschema zlib1g-dev)
 test_packages=(chromium chromium-driver clang clang-format coq doxygen gappa libcoq-flocq libcoq-gappa
-  libzarith-ocaml-dev munge ocaml-findlib ocaml-nox slurm-client slurmctld slurmd)
+  libzarith-ocaml-dev munge ocaml-findlib ocaml-nox pkg-config slurm-client slurmctld slurmd)
 
 # install_packages [NAME...]: those above, and these.
 install_packages() {

@@ -2,6 +2,7 @@
 // Leaves that meet during a step: against all pairs of leaves, and against triangles at sampled times of it.
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <random>
 
 #include <catch2/catch.hpp>
@@ -131,4 +132,14 @@ TEST_CASE("bounds over a step that do not fit are refused")
     CHECK(swept_leaf_pairs(std::array{good}).empty());
     std::vector<double> out(6);
     CHECK_THROWS_AS(swept(a.supports, a.supports, out), std::invalid_argument);
+}
+
+TEST_CASE("a mesh without triangles meets nothing in a step")
+{
+    const test::Example e = test::example(100, 5);
+    const Bvh bvh = build_bvh(e.surface, 4), none;
+    const std::vector<double> anywhere(bvh.bvs.size() * 6, std::numeric_limits<double>::infinity());
+    const SweptBody bodies[] = {{&none, {}}, {&bvh, anywhere}, {&none, {}}, {&bvh, anywhere}};
+    for (const LeafPair& pair : swept_leaf_pairs(bodies))
+        REQUIRE((pair.body_a == 1 && pair.body_b == 3));
 }

@@ -14,7 +14,9 @@ public:
 
     template <class Use> void operator()(const Use& use)
     {
-        open_ = {{0, 0}};
+        open_.clear();
+        if (!a_.bvh->bvs.empty() && !b_.bvh->bvs.empty()) // meshes without triangles have no tree
+            open_.push_back({0, 0});
         while (!open_.empty()) {
             const auto [i, j] = open_.back();
             open_.pop_back();

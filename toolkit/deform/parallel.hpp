@@ -8,15 +8,17 @@
 #include <atomic>
 #endif
 
+#if !defined(CINCH_WITHOUT_TBB)
 #include <tbb/parallel_for.h>
+#endif
 
 #include "toolkit/surface/current_executor.hpp"
 
 namespace cinch {
 
 /// body(first, last) on pieces of [0, count), in parallel, by the thread's executor (cinch/environment.hpp) or else
-/// oneTBB, every piece in the *caller's* floating-point environment. TBB would otherwise run tasks, on the calling
-/// thread too, in the environment in which its arena was created long ago.
+/// oneTBB, or in a build without it as one piece; every piece in the *caller's* floating-point environment. TBB would
+/// otherwise run tasks, on the calling thread too, in the environment in which its arena was created long ago.
 template <class Body> void parallel_blocks(std::size_t count, std::size_t grain, const Body& body)
 {
     if (count <= grain) {
@@ -39,6 +41,9 @@ template <class Body> void parallel_blocks(std::size_t count, std::size_t grain,
         });
         return;
     }
+#if defined(CINCH_WITHOUT_TBB)
+    body(std::size_t{0}, count);
+#else
     tbb::task_group_context context(tbb::task_group_context::isolated,
                                     tbb::task_group_context::default_traits | tbb::task_group_context::fp_settings);
     auto run = [&](const auto& range) { body(range.begin(), range.end()); };
@@ -56,6 +61,7 @@ template <class Body> void parallel_blocks(std::size_t count, std::size_t grain,
     after.load(std::memory_order_acquire);
 #else
     tbb::parallel_for(all, run, tbb::auto_partitioner(), context);
+#endif
 #endif
 }
 

@@ -7,13 +7,13 @@
 #include <stdexcept>
 
 #include <hwy/cache_control.h>
-#include <tbb/enumerable_thread_specific.h>
 
 #include "cinch/bounds.hpp"
 #include "cinch/environment.hpp"
 #include "toolkit/bounds/bound_box.hpp"
 #include "toolkit/bounds/bound_vertex.hpp"
 #include "toolkit/bounds/rounding.hpp"
+#include "toolkit/deform/per_thread.hpp"
 #include "toolkit/hierarchy/dop.hpp"
 #include "toolkit/hierarchy/packed_bvh.hpp"
 #include "toolkit/hierarchy/spheres.hpp"
@@ -32,7 +32,7 @@ template <class T> void intersect(std::span<T> supports, std::span<const T> othe
 template <class T> struct KernelPart {
     PackedBvh<T> packed;
     mutable std::vector<T> remembered; // each BV's own places
-    mutable tbb::enumerable_thread_specific<KernelScratch<T>> scratch;
+    mutable PerThread<KernelScratch<T>> scratch;
 
     KernelPart(const Bvh& bvh, const DeformableSurface& surface, Method method, const RefitOptions& options,
                Bounder::Leaves leaves)
@@ -82,7 +82,7 @@ struct Bounder::Parts {
     KernelParts<double> twice;
     std::optional<RestSpheres> spheres;
     std::span<const AffineMap> maps;
-    mutable tbb::enumerable_thread_specific<BoundScratch> scratch;
+    mutable PerThread<BoundScratch> scratch;
 
     std::size_t k() const { return static_cast<std::size_t>(options.kdop); }
 

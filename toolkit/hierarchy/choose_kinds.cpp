@@ -4,9 +4,9 @@
 #include <random>
 
 #include <Eigen/Geometry>
-#include <tbb/enumerable_thread_specific.h>
 
 #include "toolkit/deform/parallel.hpp"
+#include "toolkit/deform/per_thread.hpp"
 #include "toolkit/hierarchy/packed_bvh.hpp"
 #include "toolkit/hierarchy/spheres.hpp"
 
@@ -66,7 +66,7 @@ Trial attempt(const PackedBvh<double>& packed, std::span<const ProjectedMaps<dou
 {
     const std::size_t all = packed.bvs.size() * kdop;
     Trial trial{std::vector<double>(frames.size() * all), std::vector<double>(packed.bvs.size(), 0.0)};
-    tbb::enumerable_thread_specific<KernelScratch<double>> scratch;
+    PerThread<KernelScratch<double>> scratch;
     parallel_blocks(packed.bvs.size(), 64, [&](std::size_t first, std::size_t last) {
         for (std::size_t f = 0; f < frames.size(); ++f) {
             const auto supports = std::span(trial.supports).subspan(f * all + first * kdop, (last - first) * kdop);
