@@ -6,18 +6,10 @@
 #include "toolkit/python/src/frames.hpp"
 #include "toolkit/python/src/module.hpp"
 #include "toolkit/python/src/options.hpp"
+#include "toolkit/python/src/pairs.hpp"
 
 namespace cinch::python {
 namespace {
-
-using PairRow = std::array<std::uint32_t, 4>;
-static_assert(sizeof(TrianglePair) == sizeof(PairRow) && sizeof(LeafPair) == sizeof(PairRow), "rows of four");
-
-template <class Pair> py::array_t<std::uint32_t> rows_of(std::span<const Pair> pairs)
-{
-    const auto* flat = reinterpret_cast<const std::uint32_t*>(pairs.data());
-    return copied<std::uint32_t>({flat, 4 * pairs.size()}, {static_cast<py::ssize_t>(pairs.size()), 4});
-}
 
 // What Python refers to, in C++'s hands: let go of with the GIL.
 std::shared_ptr<py::object> held(py::object object)
@@ -242,43 +234,6 @@ private:
     Collider collider_;        // refers to both
 };
 
-py::array_t<std::uint32_t> swept_pairs(const py::sequence& bodies, int kdop)
-{
-    kdop_of(kdop);
-    std::vector<TreePtr> trees;
-    std::vector<std::vector<double>> supports;
-    for (const py::handle body : bodies) {
-        if (!py::isinstance<py::tuple>(body) || py::len(body) != 2)
-            throw py::value_error("bodies: pairs of a Bvh and its supports are needed");
-        const auto pair = py::reinterpret_borrow<py::tuple>(body);
-        trees.push_back(py::cast<TreePtr>(pair[0]));
-        supports.push_back(supports_from(pair[1], trees.back()->bvh.bvs.size(), kdop));
-        for (const double s : supports.back())
-            if (std::isnan(s))
-                throw py::value_error("supports: NaN is no bound");
-    }
-    return rows_of<LeafPair>(apart([trees, supports, kdop] {
-        std::vector<SweptBody> all;
-        for (std::size_t i = 0; i < trees.size(); ++i)
-            if (trees[i]->bvh.bvs.empty())
-                throw std::invalid_argument("bodies: one has no BVs");
-            else
-                all.push_back({&trees[i]->bvh, supports[i]});
-        return swept_leaf_pairs(all, kdop);
-    }));
-}
-
-py::array_t<double> swept_supports(py::handle first, py::handle last)
-{
-    const Doubles a(first, "first"), b(last, "last");
-    if (a.ndim() != 2)
-        throw py::value_error("first: supports, an array of shape (BVs, k), are needed, not " + shape_of(a.array()));
-    require_shape(b.array(), "last", {a.array().shape(0), a.array().shape(1)});
-    py::array_t<double> out(std::vector<py::ssize_t>{a.array().shape(0), a.array().shape(1)});
-    swept(a.values(), b.values(), {out.mutable_data(), a.size()});
-    return out;
-}
-
 void add_counts(py::module_& module)
 {
     py::class_<QueryCounts>(module, "QueryCounts", "What the queries of a frame did.")
@@ -393,33 +348,6 @@ bool
 A transform that has weight is not finite, or too large. They overlap everything, and are in no pair.)")
         .def_property_readonly("counts", &ColliderObject::counts, "`QueryCounts` of the frame so far.")
         .def_property_readonly("nbytes", &ColliderObject::bytes, "Of all but surfaces and BVHs that were given.");
-
-    module.def("swept_leaf_pairs", &swept_pairs, py::arg("bodies"), py::kw_only(), py::arg("kdop") = 6,
-               R"(Leaves of different bodies whose bounds over a step of time meet: broad phase of continuous collision.
-
-Parameters
-----------
-bodies : list of (Bvh, array_like of shape (BVs, k) or (BVs, 2, 3))
-    Trees with bounds of all of their BVs that hold throughout: those of a `ClipBounder`, or `swept` ones.
-kdop : int, optional
-
-Returns
--------
-numpy.ndarray of uint32, shape (n, 4)
-    Place of a body in the list, its BV, place of another body, its BV; sorted.
-)");
-    module.def("swept", &swept_supports, py::arg("first"), py::arg("last"),
-               R"(Bounds over a step in which every transform moves from one end to the other linearly.
-
-Parameters
-----------
-first, last : array_like, shape (BVs, k)
-    Supports at both ends.
-
-Returns
--------
-numpy.ndarray, shape (BVs, k)
-)");
 }
 
 } // namespace cinch::python

@@ -152,5 +152,6 @@ PYBIND11_MODULE(_core, module)
     add_refit(module);
     add_time(module);
     add_collider(module);
+    add_swept(module);
     add_simulation(module);
 }

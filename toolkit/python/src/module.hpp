@@ -15,6 +15,7 @@ void add_bvh(pybind11::module_& module);
 void add_refit(pybind11::module_& module);
 void add_time(pybind11::module_& module);
 void add_collider(pybind11::module_& module);
+void add_swept(pybind11::module_& module);
 void add_simulation(pybind11::module_& module);
 
 } // namespace cinch::python

@@ -104,7 +104,7 @@ MorphTarget target_from(py::handle vertices, py::handle displacements, py::handl
     return out;
 }
 
-py::array rows_of(const std::vector<Vec3>& rows, py::object base)
+py::array rows_seen(const std::vector<Vec3>& rows, py::object base)
 {
     return seen<double>(rows.empty() ? nullptr : rows[0].data(), {static_cast<py::ssize_t>(rows.size()), 3},
                         std::move(base));
@@ -136,10 +136,10 @@ half : array_like, shape (n, 3), optional
             "Indices of the vertices, uint32, shape (n,).")
         .def_property_readonly(
             "displacements",
-            [](const std::shared_ptr<MorphTarget>& self) { return rows_of(self->displacement, py::cast(self)); },
+            [](const std::shared_ptr<MorphTarget>& self) { return rows_seen(self->displacement, py::cast(self)); },
             "Displacements, shape (n, 3).")
         .def_property_readonly(
-            "half", [](const std::shared_ptr<MorphTarget>& self) { return rows_of(self->half, py::cast(self)); },
+            "half", [](const std::shared_ptr<MorphTarget>& self) { return rows_seen(self->half, py::cast(self)); },
             "Half extents of boxes, shape (n, 3), or (0, 3) where displacements are known.");
 }
 
@@ -215,7 +215,7 @@ ValueError
             [](const SurfacePtr& self) -> py::object {
                 if (self->get().layout.empty())
                     return py::none();
-                return rows_of(self->get().layout, py::cast(self));
+                return rows_seen(self->get().layout, py::cast(self));
             },
             "Where the vertices stand when triangles are grouped, shape (V, 3), or None: at rest.")
         .def_property_readonly(
