@@ -13,6 +13,7 @@ PYBIND11_MODULE(_exact, module)
     options.disable_function_signatures(); // they stand in the stubs
     py::register_local_exception<cinch::CheckFailed>(module, "CheckFailed", PyExc_RuntimeError).attr("__doc__") =
         "A check that the exact side makes of itself, and that failed.";
+    join_at_exit(module);
     add_verify(module);
     add_corners(module);
     add_volumes(module);

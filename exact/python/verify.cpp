@@ -172,7 +172,7 @@ py::object worst_of(const exact::TimeVerdict& self)
     out["time_s"] = self.worst->time_s;
     out["bound"] = self.worst->bound;
     out["at_least"] = self.worst->at_least;
-    return std::move(out);
+    return out;
 }
 
 void add_verdicts(py::module_& module)

@@ -169,7 +169,7 @@ leaf_triangles : int, optional
 cluster : (int, int), optional
     The most triangles and vertices of a leaf, which then is a patch of the surface; in place of `leaf_triangles`.
 detail : {'all', 'inner', 'boxes'}, optional
-    How much rest data is prepared, which takes most of the time. 'boxes' is enough for the methods convex, sphere,
+    How much rest data is prepared, which takes most of the time. 'boxes' is enough for the methods convex,
     corners, eq12, limited and vertices; 'inner' for local, and for queries.
 
 Returns

@@ -66,6 +66,8 @@ private:
 
 /// Keeps what was left behind by Ctrl-C until it ends by itself; the interpreter waits for it before it ends.
 void leave_behind(std::thread&& thread);
+/// Of each module that leaves anything behind.
+void join_at_exit(py::module_& module);
 
 /// `work` in a thread of its own, while this one waits without the GIL and looks for Ctrl-C: then it is left behind,
 /// and what it returns is thrown away. So it must own all that it uses, and touch nothing of Python. Work that takes

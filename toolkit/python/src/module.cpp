@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "toolkit/python/src/module.hpp"
 
-#include <mutex>
-#include <vector>
-
 #include <pybind11/stl.h>
 
 #include "cinch/bounds.hpp"
@@ -13,26 +10,6 @@
 
 namespace cinch::python {
 namespace {
-
-std::mutex left_mutex;
-std::vector<std::thread> left;
-
-// Without the GIL: what was left may need it.
-void join_left()
-{
-    const py::gil_scoped_release unlocked;
-    for (;;) {
-        std::vector<std::thread> some;
-        {
-            const std::lock_guard lock(left_mutex);
-            some.swap(left);
-        }
-        if (some.empty())
-            return;
-        for (std::thread& thread : some)
-            thread.join();
-    }
-}
 
 // A context: the thread's arithmetic is the default one from __enter__ to __exit__.
 class DefaultArithmeticContext {
@@ -57,12 +34,6 @@ private:
 };
 
 } // namespace
-
-void leave_behind(std::thread&& thread)
-{
-    const std::lock_guard lock(left_mutex);
-    left.push_back(std::move(thread));
-}
 
 void add_environment(py::module_& module)
 {
@@ -131,8 +102,7 @@ list of str
     Several, joined by ``+``, are intersected: ``"support+linear"``.
 )");
     module.attr("kdops") = py::make_tuple(6, 14, 18, 26);
-    module.def("_join_left", &join_left);
-    py::module_::import("atexit").attr("register")(module.attr("_join_left"));
+    join_at_exit(module);
 }
 
 } // namespace cinch::python

@@ -207,13 +207,13 @@ ValueError
         .def(py::init(&weights_from), py::arg("weights"), py::kw_only(), py::arg("nodes") = py::none(),
              py::arg("normalise") = false)
         .def_property_readonly(
-            "data", [](const Self& self) { return triplets(self->weights, py::cast(self))[0]; },
+            "data", [](const Self& self) { return py::object(triplets(self->weights, py::cast(self))[0]); },
             "Weights, vertex by vertex. Cannot be written.")
         .def_property_readonly(
-            "indices", [](const Self& self) { return triplets(self->weights, py::cast(self))[1]; },
+            "indices", [](const Self& self) { return py::object(triplets(self->weights, py::cast(self))[1]); },
             "Their simulation nodes, uint32. Cannot be written.")
         .def_property_readonly(
-            "indptr", [](const Self& self) { return triplets(self->weights, py::cast(self))[2]; },
+            "indptr", [](const Self& self) { return py::object(triplets(self->weights, py::cast(self))[2]); },
             "Where vertices begin, uint32, shape (V + 1,). Cannot be written.")
         .def_property_readonly(
             "shape",

@@ -4,14 +4,14 @@
 Under GPL-3.0-or-later, as CGAL's polyhedral packages are; built apart, where CGAL is there.
 """
 try:
-    from cinch.exact import _exact
-    from cinch.exact._exact import *  # noqa: F401,F403
-except ImportError as _error:
-    if "_exact" not in str(_error):
+    import cinch.exact._exact as _exact
+except ModuleNotFoundError as _error:
+    if _error.name != "cinch.exact._exact":
         raise
     raise ImportError(
         "cinch.exact is not part of this build; install libcgal-dev, libgmp-dev, libmpfr-dev, libmpfi-dev and "
-        "nettle-dev, then pip install --no-build-isolation ./toolkit/python again") from _error
+        "nettle-dev, then pip install --no-build-isolation ./toolkit/python again") from None
+from cinch.exact._exact import *  # noqa: E402,F401,F403
 
 __all__ = [_name for _name in dir(_exact) if not _name.startswith("_")]
 for _name in __all__:
