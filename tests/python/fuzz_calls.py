@@ -186,8 +186,7 @@ class Fuzz:
             lambda: any_of("Baked").bounds,
             lambda: cinch.read_mesh(self.mesh_file()), lambda: cinch.read_weights(self.mesh_file(), o(3)),
             lambda: cinch.read_clips(self.mesh_file(), o(3)),
-            lambda: cinch.Simulation(o(scene if self.chance(0.7) else self.torn(scene.encode()).decode(errors="replace")),
-                                     folder=o(self.folder)),
+            lambda: cinch.Simulation(o(self.scene_text()), folder=o(self.folder)),
             lambda: next(any_of("Simulation")), lambda: any_of("Simulation").surface(o(0)),
             lambda: any_of("Simulation").add_force(o(0), o(Force(self))), lambda: any_of("Simulation").transforms(o(0)),
             lambda: cinch.axes(o(6)), self.look, self.look, self.write, self.write, self.drop, self.at_once,
@@ -224,6 +223,9 @@ class Fuzz:
         path = pathlib.Path(self.folder) / name
         path.write_bytes(content)
         return self.or_absurd(path)
+
+    def scene_text(self):
+        return scene if self.chance(0.7) else self.torn(scene.encode()).decode(errors="replace")
 
     def character_file(self):
         content = (data / "scenes" / "tube.glb").read_bytes()

@@ -103,8 +103,17 @@ def test_a_wheel_can_be_made_and_used(tmp_path):
     assert used.stdout.startswith(str(tmp_path)) and "(3, 3)" in used.stdout, used.stdout + used.stderr
 
 
+def test_what_the_readme_shows_runs(exact, data):
+    (code,) = re.findall(r"```python\n(.*?)```", (source / "README.md").read_text(), re.DOTALL)
+    assert len(code.splitlines()) <= 14 and '"character.glb"' in code
+    used = python("-c", code.replace('"character.glb"', repr(str(data / "scenes" / "tube.glb"))))
+    assert used.returncode == 0, used.stderr
+    assert "8184" in used.stdout or "1023" in used.stdout, used.stdout
+
+
 def test_without_the_exact_side_its_absence_has_a_sentence(tmp_path):
     import shutil
-    shutil.copytree(pathlib.Path(cinch.__file__).parent, tmp_path / "cinch", ignore=shutil.ignore_patterns("_exact*.so"))
+    shutil.copytree(pathlib.Path(cinch.__file__).parent, tmp_path / "cinch",
+                    ignore=shutil.ignore_patterns("_exact*.so"))
     said = python("-c", "import cinch.exact", env={**os.environ, "PYTHONPATH": str(tmp_path)}, cwd=tmp_path).stderr
     assert "ImportError: cinch.exact is not part of this build; install libcgal-dev" in said, said

@@ -89,4 +89,4 @@ for axes, title in ((mean, "mean"), (most, "maximum")):
 mean.set_ylabel("radius of the bound / of the true box")
 most.legend(loc="upper left", bbox_to_anchor=(1.02, 1), fontsize=8, frameon=False, title_fontsize=8,
             title="method, simulation nodes")
-figure.savefig(options.out, dpi=110)
+figure.savefig(options.out, dpi=100)
