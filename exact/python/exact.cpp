@@ -9,6 +9,7 @@ PYBIND11_MODULE(_exact, module)
     using namespace cinch::python;
     pybind11::module_::import("cinch._core"); // whose classes these functions take
     module.doc() = "The compiled part of cinch.exact; see that package's own pages.";
+    say_type_error();
     pybind11::options options;
     options.disable_function_signatures(); // they stand in the stubs
     py::register_local_exception<cinch::CheckFailed>(module, "CheckFailed", PyExc_RuntimeError).attr("__doc__") =

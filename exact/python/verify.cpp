@@ -74,8 +74,8 @@ py::list examples_of(const std::vector<exact::Violation>& from)
 
 class VerifierObject {
 public:
-    VerifierObject(TreePtr tree, const SurfacePtr& surface, py::handle targets)
-        : tree_(std::move(tree)), targets_(targets_from(targets, surface_of_tree(tree_, surface).mesh.vertices.size()))
+    VerifierObject(const Needed<Tree>& tree, const SurfacePtr& surface, py::handle targets)
+        : tree_(tree), targets_(targets_from(targets, surface_of_tree(tree_, surface).mesh.vertices.size()))
     {
         for (const MorphTarget& target : targets_)
             if (!target.half.empty())
@@ -248,8 +248,8 @@ surface : cinch.Surface, optional
     That of the BVH.
 targets : list of cinch.MorphTarget, optional
 )")
-        .def(py::init<TreePtr, const SurfacePtr&, py::handle>(), py::arg("bvh"), py::arg("surface") = py::none(),
-             py::arg("targets") = py::tuple())
+        .def(py::init<const Needed<Tree>&, const SurfacePtr&, py::handle>(), py::arg("bvh"),
+             py::arg("surface") = py::none(), py::arg("targets") = py::tuple())
         .def("check", &VerifierObject::check, py::arg("maps"), py::arg("bounds"), py::kw_only(),
              py::arg("method") = "best", py::arg("kdop") = py::none(), py::arg("rest_shape") = "aabb",
              py::arg("weights") = py::none(), py::arg("progress") = py::none(),
@@ -280,7 +280,7 @@ Verdict, or a list of them for many frames
 
     module.def(
         "verify",
-        [](const TreePtr& tree, py::handle maps, py::handle bounds, const py::kwargs& options) {
+        [](const Needed<Tree>& tree, py::handle maps, py::handle bounds, const py::kwargs& options) {
             return py::cast(VerifierObject(tree, nullptr,
                                            options.contains("targets") ? py::object(options["targets"]) : py::tuple()))
                 .attr("check")(

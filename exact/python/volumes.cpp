@@ -40,7 +40,7 @@ Polytope
 )");
     module.def(
         "true_polytope",
-        [](const TreePtr& tree, py::ssize_t bv, py::handle maps, int kdop) {
+        [](const Needed<Tree>& tree, py::ssize_t bv, py::handle maps, int kdop) {
             const DeformableSurface& surface = surface_of_tree(tree, nullptr);
             kdop_of(kdop);
             if (bv < 0 || bv >= static_cast<py::ssize_t>(tree->bvh.bvs.size()))

@@ -114,7 +114,7 @@ class Fuzz:
     def options(self):
         out = {}
         for name, values in (("method", cinch.methods() + ["support+linear", "eq13"]), ("kdop", [6, 14, 18, 26, 7]),
-                             ("precision", ["float32", "float64"]), ("passes", [1, 2, 0]),
+                             ("precision", ["float32", "float64"]), ("passes", [1, 2, 0, -1]),
                              ("rest_shape", ["aabb", "obb"]), ("remember", [True, False]), ("proven", [True, False])):
             if self.chance(0.3):
                 out[name] = self.r.choice(values)

@@ -162,7 +162,7 @@ def test_options():
     says("method: 'bets' is unknown; known are convex", cinch.Refitter, bvh, method="bets")
     says("k must be 6, 14, 18 or 26", cinch.Refitter, bvh, kdop=8)
     says("precision", cinch.Refitter, bvh, precision="half")
-    says("passes", cinch.Refitter, bvh, method="eq12", passes=0)
+    says("passes", cinch.Refitter, bvh, method="eq12", passes=-1)
     says("no option 'mehtod'", cinch.Refitter, bvh, mehtod="best", error=TypeError)
     says("option kdop", cinch.Refitter, bvh, kdop="six", error=TypeError)
     says("without the rest data", cinch.Refitter, bvh)

@@ -9,7 +9,7 @@
 namespace cinch::python {
 namespace {
 
-TreePtr build(const SurfacePtr& surface, std::size_t leaf_triangles, py::handle leaf, const std::string& detail)
+TreePtr build(const Needed<Surface>& surface, std::size_t leaf_triangles, py::handle leaf, const std::string& detail)
 {
     surface->require_unchanged();
     const RestDetail rest = detail_of(detail);
@@ -68,52 +68,52 @@ void add_bvh(py::module_& module)
 BVs stand level by level, the root first, children after parents. Arrays are its own memory and cannot be written.
 )");
     bvh.def_property_readonly(
-           "surface", [](const TreePtr& self) { return self->surface; }, "The surface that it was built over.")
-        .def("__len__", [](const TreePtr& self) { return size_of(self); })
+           "surface", [](const Needed<Tree>& self) { return self->surface; }, "The surface that it was built over.")
+        .def("__len__", [](const Needed<Tree>& self) { return size_of(self); })
         .def_property_readonly(
             "detail",
-            [](const TreePtr& self) {
+            [](const Needed<Tree>& self) {
                 constexpr const char* names[] = {"boxes", "inner", "all"};
                 return names[static_cast<std::size_t>(self->bvh.detail)];
             },
             "How much of the rest data was prepared: 'boxes', 'inner' or 'all'.")
         .def_property_readonly(
-            "nbytes", [](const TreePtr& self) { return self->bvh.bytes(); }, "Of all arrays.")
+            "nbytes", [](const Needed<Tree>& self) { return self->bvh.bytes(); }, "Of all arrays.")
         .def_property_readonly(
-            "level", [](const TreePtr& self) { return whole(self, self->bvh.level); },
+            "level", [](const Needed<Tree>& self) { return whole(self, self->bvh.level); },
             "Level i is BVs ``level[i]`` to before ``level[i + 1]``, uint32.")
         .def_property_readonly(
-            "triangle", [](const TreePtr& self) { return whole(self, self->bvh.triangle); },
+            "triangle", [](const Needed<Tree>& self) { return whole(self, self->bvh.triangle); },
             "A permutation of the triangles, uint32, shape (T,).")
         .def_property_readonly(
-            "node", [](const TreePtr& self) { return whole(self, self->bvh.node); },
+            "node", [](const Needed<Tree>& self) { return whole(self, self->bvh.node); },
             "Per BV, ascending, every simulation node that influences any of its vertices, uint32.")
         .def_property_readonly(
-            "l", [](const TreePtr& self) { return whole(self, self->bvh.l); },
+            "l", [](const Needed<Tree>& self) { return whole(self, self->bvh.l); },
             "Per entry of `node` the least weight over the BV's vertices.")
         .def_property_readonly(
-            "h", [](const TreePtr& self) { return whole(self, self->bvh.h); }, "And the greatest one.")
+            "h", [](const Needed<Tree>& self) { return whole(self, self->bvh.h); }, "And the greatest one.")
         .def_property_readonly(
             "centre",
-            [](const TreePtr& self) {
+            [](const Needed<Tree>& self) {
                 return column<double>(self, [](const Bv& bv) { return bv.box.centre.data(); }, {3});
             },
             "Centres of the rest boxes, shape (BVs, 3).")
         .def_property_readonly(
             "half",
-            [](const TreePtr& self) {
+            [](const Needed<Tree>& self) {
                 return column<double>(self, [](const Bv& bv) { return bv.box.half.data(); }, {3});
             },
             "Half extents of the rest boxes, shape (BVs, 3).")
         .def_property_readonly(
             "oriented_centre",
-            [](const TreePtr& self) {
+            [](const Needed<Tree>& self) {
                 return column<double>(self, [](const Bv& bv) { return bv.oriented.centre.data(); }, {3});
             },
             "Centres of the oriented rest boxes, shape (BVs, 3).")
         .def_property_readonly(
             "oriented_axes",
-            [](const TreePtr& self) {
+            [](const Needed<Tree>& self) {
                 return column<double>(self, [](const Bv& bv) { return bv.oriented.axis[0].data(); }, {3, 3});
             },
             "Their axes, half extents with direction, shape (BVs, 3 axes, 3).");
@@ -130,14 +130,14 @@ BVs stand level by level, the root first, children after parents. Arrays are its
         const Number member = what.first;
         bvh.def_property_readonly(
             name,
-            [member](const TreePtr& self) {
+            [member](const Needed<Tree>& self) {
                 return column<std::uint32_t>(self, [member](const Bv& bv) { return &(bv.*member); });
             },
             what.second);
     }
     bvh.def(
            "vertices_of",
-           [](const TreePtr& self, py::ssize_t bv) {
+           [](const Needed<Tree>& self, py::ssize_t bv) {
                const auto vertices = vertices_of(self->surface->get(), self->bvh, self->bvh.bvs[place(self, bv)]);
                return copied<std::uint32_t>(vertices, {static_cast<py::ssize_t>(vertices.size())});
            },
@@ -151,7 +151,7 @@ Returns
 -------
 numpy.ndarray of uint32
 )")
-        .def("__repr__", [](const TreePtr& self) {
+        .def("__repr__", [](const Needed<Tree>& self) {
             return "<cinch.Bvh: " + std::to_string(self->bvh.bvs.size()) + " BVs in " +
                    std::to_string(self->bvh.level.empty() ? 0 : self->bvh.level.size() - 1) + " levels>";
         });

@@ -16,6 +16,19 @@ namespace cinch::python {
 
 namespace py = pybind11;
 
+/// From here on, in this module, a value that is none of a kind's is a TypeError.
+inline void say_type_error()
+{
+    py::register_local_exception_translator([](std::exception_ptr raised) {
+        try {
+            if (raised)
+                std::rethrow_exception(raised);
+        } catch (const py::cast_error& error) {
+            PyErr_SetString(PyExc_TypeError, error.what());
+        }
+    });
+}
+
 /// How often a long call looks for Ctrl-C.
 constexpr std::chrono::milliseconds look_every{50};
 

@@ -26,7 +26,7 @@ CharacterPtr read(const std::filesystem::path& path, bool partial, bool morphs)
     });
 }
 
-ClipPtr sampled(const CharacterPtr& self, py::handle clip, double fps)
+ClipPtr sampled(const Needed<CharacterObject>& self, py::handle clip, double fps)
 {
     if (!(std::isfinite(fps) && fps > 0))
         throw py::value_error("fps: a finite number above 0 is needed");
@@ -35,7 +35,7 @@ ClipPtr sampled(const CharacterPtr& self, py::handle clip, double fps)
         ClipObject{sample(self->character, *chosen.animation, fps), self->character.joints.size()});
 }
 
-CharacterPtr any_weights(const CharacterPtr& self, double least, double greatest)
+CharacterPtr any_weights(const Needed<CharacterObject>& self, double least, double greatest)
 {
     if (self->any_weights_of)
         throw py::value_error("the character's morph targets have any weights already");
@@ -43,7 +43,7 @@ CharacterPtr any_weights(const CharacterPtr& self, double least, double greatest
         apart([self, least, greatest] { return with_surface(with_any_weights(self->character, least, greatest)); });
     out->least = least;
     out->greatest = greatest;
-    out->any_weights_of = self;
+    out->any_weights_of = self.object;
     return out;
 }
 
@@ -94,7 +94,7 @@ py::list morph_curves_of(const AnimationObject& self)
     });
 }
 
-py::list bones_of(const CharacterPtr& self)
+py::list bones_of(const Needed<CharacterObject>& self)
 {
     return list_of(self->character.bones, [](const Bone& bone) {
         py::dict out;
@@ -178,7 +178,7 @@ Made by `read_character`. Vertices with equal position, weights and displacement
             "surface", [](const CharacterObject& self) { return self.surface; }, "Its `Surface` in bind pose.")
         .def_property_readonly(
             "clips",
-            [](const CharacterPtr& self) {
+            [](const Needed<CharacterObject>& self) {
                 return list_of(self->character.animations, [&](const Character::Animation& a) {
                     return AnimationObject{self, &a};
                 });
@@ -186,7 +186,7 @@ Made by `read_character`. Vertices with equal position, weights and displacement
             "Its animations, a list of `Animation`.")
         .def_property_readonly(
             "rest",
-            [](const CharacterPtr& self) {
+            [](const Needed<CharacterObject>& self) {
                 return AnimationObject{self, &self->character.rest};
             },
             "The pose of the file, as an animation that moves nothing.")
@@ -212,7 +212,7 @@ Made by `read_character`. Vertices with equal position, weights and displacement
             "Of each simulation node the map from the mesh at rest to its bone, shape (J, 3, 4).")
         .def_property_readonly(
             "file_weights",
-            [](const CharacterPtr& self) { return triplets(self->character.influences, py::cast(self)); },
+            [](const Needed<CharacterObject>& self) { return triplets(self->character.influences, py::cast(self)); },
             "Weights as the file has them, not normalised: (data, indices, indptr).")
         .def_property_readonly(
             "weight_report", [](const CharacterObject& self) { return self.report; },
@@ -252,7 +252,7 @@ Clip
 )")
         .def(
             "rest_pose",
-            [](const CharacterPtr& self) {
+            [](const Needed<CharacterObject>& self) {
                 return std::make_shared<ClipObject>(
                     ClipObject{rest_pose(self->character), self->character.joints.size()});
             },

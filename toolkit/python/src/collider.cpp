@@ -69,10 +69,10 @@ public:
         BodyId id;
         const LazyOptions how = lazy_options(options_, own, false);
         if (py::isinstance<Tree>(of)) {
-            body.tree = py::cast<TreePtr>(of);
+            body.tree = needed<Tree>(of, "body");
             body.surface = body.tree->surface;
         } else {
-            body.surface = py::cast<SurfacePtr>(of);
+            body.surface = needed<Surface>(of, "body");
         }
         body.surface->require_unchanged();
         const DeformableSurface& surface = body.surface->get();

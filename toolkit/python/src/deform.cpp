@@ -38,7 +38,7 @@ py::array_t<double> over_frames(Frames& frames, std::size_t vertices, py::handle
     return array;
 }
 
-py::array_t<double> evaluate_frames(const SurfacePtr& surface, py::handle maps, py::handle rest, py::handle out,
+py::array_t<double> evaluate_frames(const Needed<Surface>& surface, py::handle maps, py::handle rest, py::handle out,
                                     py::handle progress)
 {
     surface->require_unchanged();
@@ -71,7 +71,7 @@ py::array_t<double> displaced(py::handle targets, py::handle weights, py::handle
 // Either arithmetic.
 class EvaluatorObject {
 public:
-    EvaluatorObject(SurfacePtr surface, const std::string& precision) : surface_(std::move(surface))
+    EvaluatorObject(const Needed<Surface>& surface, const std::string& precision) : surface_(surface)
     {
         surface_->require_unchanged();
         if (surface_->get().mesh.vertices.empty())
@@ -108,8 +108,9 @@ void require_count(std::size_t count)
 
 void add_nodes(py::module_& module)
 {
-    using Self = std::shared_ptr<SimulationNodes>;
-    py::class_<SimulationNodes, Self>(module, "SimulationNodes", R"(Simulation nodes in rest position.
+    using Self = Needed<SimulationNodes>;
+    py::class_<SimulationNodes, std::shared_ptr<SimulationNodes>>(module, "SimulationNodes",
+                                                                  R"(Simulation nodes in rest position.
 
 Parameters
 ----------
@@ -244,7 +245,8 @@ surface : Surface
 precision : {'float64', 'float32'}, optional
     With float64 the bits of `evaluate`; with float32 for pictures and files, not for proofs.
 )")
-        .def(py::init<SurfacePtr, const std::string&>(), py::arg("surface"), py::arg("precision") = "float64")
+        .def(py::init<const Needed<Surface>&, const std::string&>(), py::arg("surface"),
+             py::arg("precision") = "float64")
         .def("__call__", &EvaluatorObject::operator(), py::arg("maps"), py::kw_only(), py::arg("out") = py::none(),
              py::arg("progress") = py::none(), "The same as `evaluate`, of this surface.");
 }

@@ -138,8 +138,9 @@ Clip
 void add_files(py::module_& module)
 {
     add_clip(module);
-    using Self = std::shared_ptr<MeshFile>;
-    py::class_<MeshFile, Self>(module, "Mesh", "The surface of a mesh file, as it declares it; made by `read_mesh`.")
+    using Self = Needed<MeshFile>;
+    py::class_<MeshFile, std::shared_ptr<MeshFile>>(
+        module, "Mesh", "The surface of a mesh file, as it declares it; made by `read_mesh`.")
         .def_property_readonly(
             "vertices",
             [](const Self& self) {

@@ -84,7 +84,7 @@ inline std::vector<MorphTarget> targets_from(py::handle from, std::size_t vertic
 {
     std::vector<MorphTarget> out;
     for (const py::handle one : from) {
-        out.push_back(py::cast<const MorphTarget&>(one));
+        out.push_back(*needed<MorphTarget>(one, "targets"));
         if (!out.back().vertex.empty() && out.back().vertex.back() >= vertices)
             throw py::value_error("morph target " + std::to_string(out.size() - 1) + " displaces vertex " +
                                   std::to_string(out.back().vertex.back()) + "; there are " + std::to_string(vertices));

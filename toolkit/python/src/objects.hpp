@@ -7,6 +7,7 @@
 #include "cinch/bvh.hpp"
 #include "cinch/io.hpp"
 #include "toolkit/python/src/arrays.hpp"
+#include "toolkit/python/src/needed.hpp"
 #include "toolkit/time/bake_clip.hpp"
 
 namespace cinch::python {

@@ -77,8 +77,8 @@ inline RefitOptions refit_options(const py::kwargs& given)
                 out.precision = precision_of(py::cast<std::string>(value));
             else if (name == "passes") {
                 out.passes = py::cast<int>(value);
-                if (out.passes < 1 || out.passes > 1000)
-                    throw py::value_error("passes: from 1 to 1000 are needed, not " + std::to_string(out.passes));
+                if (out.passes < 0 || out.passes > 1000)
+                    throw py::value_error("passes: from 0 to 1000 are needed, not " + std::to_string(out.passes));
             } else if (name == "rest_shape")
                 out.rest_shape = rest_shape_of(py::cast<std::string>(value));
             else if (name == "remember")

@@ -13,13 +13,13 @@ namespace {
 
 class RefitterObject {
 public:
-    static std::shared_ptr<RefitterObject> make(TreePtr tree, const SurfacePtr& surface, py::handle targets,
+    static std::shared_ptr<RefitterObject> make(const Needed<Tree>& tree, const SurfacePtr& surface, py::handle targets,
                                                 const py::kwargs& options)
     {
         auto self = std::make_shared<RefitterObject>();
         self->options_ = refit_options(options);
         self->targets_ = targets_from(targets, surface_of_tree(tree, surface).mesh.vertices.size());
-        self->tree_ = std::move(tree);
+        self->tree_ = tree;
         apart([self] {
             self->refit_.emplace(self->tree_->bvh, self->tree_->surface->get(), self->options_, self->targets_);
         });
@@ -72,7 +72,7 @@ private:
 
 class CrowdObject {
 public:
-    CrowdObject(TreePtr tree, const SurfacePtr& surface, int level, bool proven)
+    CrowdObject(const Needed<Tree>& tree, const SurfacePtr& surface, int level, bool proven)
         : tree_(std::move(tree)),
           refit_(tree_->bvh, surface_of_tree(tree_, surface), {level, proven ? Rounding::proven : Rounding::plain})
     {
@@ -191,7 +191,7 @@ void add_refit(py::module_& module)
 
     module.def(
         "refit",
-        [](const TreePtr& tree, py::handle maps, const py::kwargs& options) {
+        [](const Needed<Tree>& tree, py::handle maps, const py::kwargs& options) {
             return RefitterObject::make(tree, nullptr, py::tuple(), options)
                 ->call(maps, py::none(), py::none(), true, py::none());
         },
@@ -225,8 +225,8 @@ level : int, optional
 proven : bool, optional
     False: the formula of engines, which proves nothing.
 )")
-        .def(py::init<TreePtr, const SurfacePtr&, int, bool>(), py::arg("bvh"), py::arg("surface") = py::none(),
-             py::kw_only(), py::arg("level") = 0, py::arg("proven") = true)
+        .def(py::init<const Needed<Tree>&, const SurfacePtr&, int, bool>(), py::arg("bvh"),
+             py::arg("surface") = py::none(), py::kw_only(), py::arg("level") = 0, py::arg("proven") = true)
         .def("__call__", &CrowdObject::operator(), py::arg("maps"), py::kw_only(), py::arg("out") = py::none(),
              R"(Boxes of all bodies.
 

@@ -250,7 +250,7 @@ RuntimeError
         .def_property_readonly("frame_count", &SimulationObject::frame_count,
                                "That the scene asks for, the start included.")
         .def_property_readonly("time_s", &SimulationObject::time_s, "Since the start, seconds.")
-        .def("__iter__", [](const std::shared_ptr<SimulationObject>& self) { return self; })
+        .def("__iter__", [](const Needed<SimulationObject>& self) { return self; })
         .def("__next__", &SimulationObject::next, "The next `SimulationFrame`, the present one first.");
 }
 

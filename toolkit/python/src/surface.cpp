@@ -65,7 +65,7 @@ SurfacePtr make_surface(py::handle vertices, py::handle triangles, py::handle we
     return std::make_shared<Surface>(std::move(points), std::move(corners), std::move(bound));
 }
 
-py::array vertices_of_surface(const SurfacePtr& self)
+py::array vertices_of_surface(const Needed<Surface>& self)
 {
     const auto& vertices = self->get().mesh.vertices;
     py::object base = self->array() ? self->array() : py::cast(self);
@@ -73,7 +73,7 @@ py::array vertices_of_surface(const SurfacePtr& self)
                         std::move(base));
 }
 
-py::array triangles_of_surface(const SurfacePtr& self)
+py::array triangles_of_surface(const Needed<Surface>& self)
 {
     const auto& triangles = self->get().mesh.triangles;
     return seen<std::uint32_t>(triangles.empty() ? nullptr : triangles[0].data(),
@@ -129,17 +129,17 @@ half : array_like, shape (n, 3), optional
         .def(py::init(&target_from), py::arg("vertices"), py::arg("displacements"), py::arg("half") = py::none())
         .def_property_readonly(
             "vertices",
-            [](const std::shared_ptr<MorphTarget>& self) {
+            [](const Needed<MorphTarget>& self) {
                 return seen<std::uint32_t>(self->vertex.data(), {static_cast<py::ssize_t>(self->vertex.size())},
                                            py::cast(self));
             },
             "Indices of the vertices, uint32, shape (n,).")
         .def_property_readonly(
             "displacements",
-            [](const std::shared_ptr<MorphTarget>& self) { return rows_seen(self->displacement, py::cast(self)); },
+            [](const Needed<MorphTarget>& self) { return rows_seen(self->displacement, py::cast(self)); },
             "Displacements, shape (n, 3).")
         .def_property_readonly(
-            "half", [](const std::shared_ptr<MorphTarget>& self) { return rows_seen(self->half, py::cast(self)); },
+            "half", [](const Needed<MorphTarget>& self) { return rows_seen(self->half, py::cast(self)); },
             "Half extents of boxes, shape (n, 3), or (0, 3) where displacements are known.");
 }
 
@@ -206,13 +206,13 @@ ValueError
                                "Indices of vertices, uint32, shape (T, 3). Cannot be written.")
         .def_property_readonly(
             "weights",
-            [](const SurfacePtr& self) {
+            [](const Needed<Surface>& self) {
                 return WeightsObject{self->get().weights, {}, 0};
             },
             "A copy of its `Weights`.")
         .def_property_readonly(
             "layout",
-            [](const SurfacePtr& self) -> py::object {
+            [](const Needed<Surface>& self) -> py::object {
                 if (self->get().layout.empty())
                     return py::none();
                 return rows_seen(self->get().layout, py::cast(self));

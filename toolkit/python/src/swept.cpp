@@ -17,7 +17,7 @@ py::array_t<std::uint32_t> swept_pairs(const py::sequence& bodies, int kdop)
         if (!py::isinstance<py::tuple>(body) || py::len(body) != 2)
             throw py::value_error("bodies: pairs of a Bvh and its supports are needed");
         const auto pair = py::reinterpret_borrow<py::tuple>(body);
-        trees.push_back(py::cast<TreePtr>(pair[0]));
+        trees.push_back(needed<Tree>(pair[0], "bodies"));
         supports.push_back(supports_from(pair[1], trees.back()->bvh.bvs.size(), kdop));
         for (const double s : supports.back())
             if (std::isnan(s))

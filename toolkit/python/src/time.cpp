@@ -46,13 +46,13 @@ double time_from(py::handle from, const char* name)
 
 class ClipBounderObject {
 public:
-    static std::shared_ptr<ClipBounderObject> make(const CharacterPtr& character, py::handle clip, TreePtr tree,
-                                                   const py::kwargs& options)
+    static std::shared_ptr<ClipBounderObject> make(const Needed<CharacterObject>& character, py::handle clip,
+                                                   const Needed<Tree>& tree, const py::kwargs& options)
     {
         require_tree_of(tree, character);
         auto self = std::make_shared<ClipBounderObject>();
         self->chosen_ = animation_of(character, clip);
-        self->tree_ = std::move(tree);
+        self->tree_ = tree;
         self->kdop_ = static_cast<std::size_t>(refit_options(options).kdop);
         apart([self, how = refit_options(options)] {
             self->bound_.emplace(self->chosen_.of->character, *self->chosen_.animation, self->tree_->surface->get(),
@@ -62,7 +62,7 @@ public:
     }
 
     // In parts, so that nobody waits for what is left behind.
-    static py::array_t<double> call(const std::shared_ptr<ClipBounderObject>& self, py::handle t0, py::handle t1,
+    static py::array_t<double> call(const Needed<ClipBounderObject>& self, py::handle t0, py::handle t1,
                                     double tolerance, bool boxes)
     {
         if (!(std::isfinite(tolerance) && tolerance >= 0))
@@ -110,9 +110,9 @@ py::array_t<double> bounds_of(const Baked& baked, bool boxes)
     return boxed(std::move(all), baked.tree->bvh.bvs.size(), baked.kdop, baked.intervals.size(), boxes);
 }
 
-std::shared_ptr<Baked> bake(const CharacterPtr& character, py::handle clip, py::handle tree, py::handle interval_s,
-                            bool whole, double tolerance, py::handle engine_options, py::handle progress,
-                            const py::kwargs& options)
+std::shared_ptr<Baked> bake(const Needed<CharacterObject>& character, py::handle clip, py::handle tree,
+                            py::handle interval_s, bool whole, double tolerance, py::handle engine_options,
+                            py::handle progress, const py::kwargs& options)
 {
     const RefitOptions how = refit_options(options);
     ClipCuts cuts{whole, interval_s.is_none() ? 0 : time_from(interval_s, "interval"), tolerance};
@@ -147,7 +147,7 @@ std::shared_ptr<Baked> bake(const CharacterPtr& character, py::handle clip, py::
             return std::make_shared<Tree>(Tree{build_bvh(surface->get(), 4), surface});
         });
     } else {
-        out->tree = py::cast<TreePtr>(tree);
+        out->tree = needed<Tree>(tree, "bvh");
         require_tree_of(out->tree, character);
     }
     const auto& animation = *out->clip.animation;
@@ -223,7 +223,7 @@ bvh : Bvh
         .def(py::init(&ClipBounderObject::make), py::arg("character"), py::arg("clip"), py::arg("bvh"))
         .def(
             "__call__",
-            [](const std::shared_ptr<ClipBounderObject>& self, py::handle t0, py::handle t1, double tolerance) {
+            [](const Needed<ClipBounderObject>& self, py::handle t0, py::handle t1, double tolerance) {
                 return ClipBounderObject::call(self, t0, t1, tolerance, true);
             },
             py::arg("t0"), py::arg("t1"), py::kw_only(), py::arg("tolerance") = 0.01,
@@ -242,7 +242,7 @@ numpy.ndarray, shape ([intervals,] BVs, 2, 3) or ([intervals,] BVs, k)
 )")
         .def(
             "supports",
-            [](const std::shared_ptr<ClipBounderObject>& self, py::handle t0, py::handle t1, double tolerance) {
+            [](const Needed<ClipBounderObject>& self, py::handle t0, py::handle t1, double tolerance) {
                 return ClipBounderObject::call(self, t0, t1, tolerance, false);
             },
             py::arg("t0"), py::arg("t1"), py::kw_only(), py::arg("tolerance") = 0.01,

@@ -6,6 +6,8 @@
 #include <memory>
 #include <numeric>
 
+#include "toolkit/python/src/needed.hpp"
+
 namespace cinch::python {
 namespace {
 
@@ -62,7 +64,10 @@ Influences from_triplets(py::handle data, py::handle columns, py::handle starts,
     if (!nodes.is_none()) {
         if (!py::isinstance<py::int_>(nodes) && !PyIndex_Check(nodes.ptr()))
             throw py::type_error("nodes: a whole number is needed");
-        const auto given = py::cast<long long>(py::reinterpret_steal<py::object>(PyNumber_Index(nodes.ptr())));
+        const auto index = py::reinterpret_steal<py::object>(PyNumber_Index(nodes.ptr()));
+        if (!index)
+            throw py::error_already_set();
+        const auto given = py::cast<long long>(index);
         if (given < 0 || static_cast<std::uint64_t>(given) >= most)
             throw py::value_error("nodes: from 0 to below 2^32 are needed");
         count = static_cast<std::uint64_t>(given);
@@ -184,8 +189,9 @@ Dividing by their sum s changes every weight of a vertex by the share ``abs(1/s 
         .def_readonly("least_sum", &WeightReport::least_sum, "Of the weights of one vertex.")
         .def_readonly("greatest_sum", &WeightReport::greatest_sum, "Of the weights of one vertex.");
 
-    using Self = std::shared_ptr<WeightsObject>;
-    py::class_<WeightsObject, Self>(module, "Weights", R"(Convex weights of every vertex: how simulation nodes move it.
+    using Self = Needed<WeightsObject>;
+    py::class_<WeightsObject, std::shared_ptr<WeightsObject>>(
+        module, "Weights", R"(Convex weights of every vertex: how simulation nodes move it.
 
 Stored as multiples of 2**-53 that sum to exactly 1, ascending in simulation node, without zeros.
 
