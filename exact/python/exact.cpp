@@ -10,8 +10,6 @@ PYBIND11_MODULE(_exact, module)
     pybind11::module_::import("cinch._core"); // whose classes these functions take
     module.doc() = "The compiled part of cinch.exact; see that package's own pages.";
     say_type_error();
-    pybind11::options options;
-    options.disable_function_signatures(); // they stand in the stubs
     py::register_local_exception<cinch::CheckFailed>(module, "CheckFailed", PyExc_RuntimeError).attr("__doc__") =
         "A check that the exact side makes of itself, and that failed.";
     join_at_exit(module);

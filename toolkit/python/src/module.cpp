@@ -112,8 +112,6 @@ PYBIND11_MODULE(_core, module)
     using namespace cinch::python;
     module.doc() = "The compiled part of cinch; see the package's own pages.";
     say_type_error();
-    pybind11::options options;
-    options.disable_function_signatures(); // they stand in the stubs
     add_environment(module);
     add_surface(module);
     add_deform(module);
