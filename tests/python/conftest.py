@@ -5,8 +5,11 @@ import os
 import pathlib
 import sys
 
+import hypothesis
 import pytest
 
+hypothesis.settings.register_profile("cinch", database=None, derandomize=True, deadline=None)  # the same on every run
+hypothesis.settings.load_profile("cinch")
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 source = pathlib.Path(__file__).resolve().parents[2]
 

@@ -141,7 +141,7 @@ class Fuzz:
         some = lambda: self.r.choice([(), (1,), (3,)])  # noqa: E731
         calls = [
             self.surface, self.surface,
-            lambda: cinch.Surface(o(self.mesh()[0]), o(self.mesh()[1]), o(self.weights(8))),
+            lambda: cinch.Surface(o(self.mesh()[0]), o(self.mesh()[1]), o(self.weights(8)), layout=o(None)),
             lambda: cinch.Weights(o(self.weights(5)), nodes=o(None), normalise=o(True)),
             lambda: cinch.Weights((o(self.n.random(6)), o(self.n.integers(0, 4, 6)), o([0, 2, 4, 6])), nodes=o(4),
                                   normalise=True),

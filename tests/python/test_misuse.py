@@ -46,6 +46,18 @@ def test_shapes_kinds_and_numbers_of_surfaces():
         says(f"index {bad} at place 17 is out of range", cinch.Surface, vertices.copy(), wrong, dense)
 
 
+def test_layouts_group_triangles_and_change_no_truth():
+    moved = vertices * [1, 1, 9]
+    says("layout: an array of shape", made, layout=vertices[1:])
+    says("layout[2]", made, layout=np.where(np.arange(len(vertices))[:, None] == 2, np.nan, vertices))
+    plain, laid = (cinch.build_bvh(made(**more)) for more in ({}, {"layout": moved}))
+    assert np.array_equal(laid.surface.layout, moved) and plain.surface.layout is None
+    assert not np.array_equal(plain.triangle, laid.triangle)
+    assert np.array_equal(np.sort(plain.triangle), np.sort(laid.triangle))
+    assert plain.local.shape == (len(plain.node), 6) and plain.model.shape == (len(plain.node), 8)
+    assert np.allclose(np.add.reduceat(plain.model[:, 0], plain.first_influence), 1, rtol=0, atol=1e-15)
+
+
 def test_weights_that_are_not_convex():
     def weights(change, **options):
         wrong = dense.copy()

@@ -35,7 +35,7 @@ def holds(bvh, vertices, supports, axes):
     return True
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(st.data())
 def test_bounds_hold_vertices(data):
     surface = data.draw(surfaces())
@@ -49,7 +49,7 @@ def test_bounds_hold_vertices(data):
         assert not holds(bvh, vertices, supports - 1e9, cinch.axes(kdop))
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.data())
 def test_bounds_are_proven(exact, data):
     surface = data.draw(surfaces())
@@ -63,7 +63,7 @@ def test_bounds_are_proven(exact, data):
     assert exact.verify(bvh, maps, lowered, method="vertices").violated == lowered.size
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.data())
 def test_every_layout_gives_the_same(data):
     vertices, triangles = shapes.torus(8, 6)
@@ -78,7 +78,7 @@ def test_every_layout_gives_the_same(data):
     assert np.array_equal(refit(np.stack([maps, maps]))[1], same)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.data())
 def test_pairs_are_symmetric_and_whole(data):
     vertices, triangles = shapes.torus(8, 6)

@@ -46,6 +46,15 @@ py::array column(const TreePtr& tree, Member member, std::vector<py::ssize_t> mo
     return seen<T>(member(first), std::move(shape), py::cast(tree), std::move(strides));
 }
 
+// The rows of one entry per simulation node of every BV, as doubles.
+template <class T> py::array entries(const TreePtr& tree, const std::vector<T>& values)
+{
+    constexpr auto columns = static_cast<py::ssize_t>(sizeof(T) / sizeof(double));
+    return seen<double>(reinterpret_cast<const double*>(values.data()),
+                        {static_cast<py::ssize_t>(values.size()), columns}, py::cast(tree));
+}
+static_assert(sizeof(RestBox) == 6 * sizeof(double) && sizeof(WeightModel) == 8 * sizeof(double), "rows of doubles");
+
 template <class T> py::array whole(const TreePtr& tree, const std::vector<T>& values)
 {
     return seen<T>(values.data(), {static_cast<py::ssize_t>(values.size())}, py::cast(tree));
@@ -94,6 +103,19 @@ BVs stand level by level, the root first, children after parents. Arrays are its
         .def_property_readonly(
             "h", [](const Needed<Tree>& self) { return whole(self, self->bvh.h); }, "And the greatest one.")
         .def_property_readonly(
+            "local", [](const Needed<Tree>& self) { return entries(self, self->bvh.local); },
+            "Per entry of `node` the box of the BV's vertices that it influences: centre and half extents, shape (n, "
+            "6).")
+        .def_property_readonly(
+            "radius", [](const Needed<Tree>& self) { return whole(self, self->bvh.radius); },
+            "Per entry of `node` the radius of a ball about that box's centre around these vertices.")
+        .def_property_readonly(
+            "model", [](const Needed<Tree>& self) { return entries(self, self->bvh.model); },
+            "Per entry of `node` the model of its weight, shape (n, 8): mean, gradient, residual, moment.")
+        .def_property_readonly(
+            "point", [](const Needed<Tree>& self) { return whole(self, self->bvh.point); },
+            "Extreme vertices of the BVs, uint32.")
+        .def_property_readonly(
             "centre",
             [](const Needed<Tree>& self) {
                 return column<double>(self, [](const Bv& bv) { return bv.box.centre.data(); }, {3});
@@ -124,6 +146,8 @@ BVs stand level by level, the root first, children after parents. Arrays are its
         {"first_child", {&Bv::first_child, "The other child is the next BV; 0 for a leaf."}},
         {"first_influence", {&Bv::first_influence, "Where its simulation nodes begin in `node`, `l` and `h`."}},
         {"influence_count", {&Bv::influence_count, "How many simulation nodes influence it."}},
+        {"first_point", {&Bv::first_point, "Where its extreme vertices begin in `point`."}},
+        {"point_count", {&Bv::point_count, "How many it has."}},
         {"vertex_influences", {&Bv::vertex_influences, "The most simulation nodes of any one of its vertices."}},
     };
     for (const auto& [name, what] : numbers) {

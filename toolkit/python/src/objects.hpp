@@ -22,8 +22,8 @@ public:
         : at_(&there), keeper_(std::move(keeper))
     {
     }
-    /// `vertices` is shared where it can be, see stands_in.
-    Surface(Doubles vertices, std::vector<Triangle>&& triangles, Weights&& weights);
+    /// `vertices` is shared where it can be, see stands_in; all else is in `rest`.
+    Surface(Doubles vertices, DeformableSurface&& rest);
     ~Surface();
     Surface(const Surface&) = delete;
     Surface& operator=(const Surface&) = delete;

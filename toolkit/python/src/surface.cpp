@@ -44,7 +44,8 @@ std::vector<Triangle> triangles_from(py::handle from, std::size_t vertices)
     return out;
 }
 
-SurfacePtr make_surface(py::handle vertices, py::handle triangles, py::handle weights, bool copy, bool normalise)
+SurfacePtr make_surface(py::handle vertices, py::handle triangles, py::handle weights, bool copy, bool normalise,
+                        py::handle layout)
 {
     Doubles points(vertices, "vertices");
     require_shape(points.array(), "vertices", {any, 3});
@@ -57,12 +58,17 @@ SurfacePtr make_surface(py::handle vertices, py::handle triangles, py::handle we
     if (bound.vertex_count() != points.shape(0))
         throw py::value_error("weights: " + std::to_string(bound.vertex_count()) + " rows for " +
                               std::to_string(points.shape(0)) + " vertices");
-    if (copy) {
-        const auto rows = points.rows<Vec3>();
-        return std::make_shared<Surface>(
-            DeformableSurface{{{rows.begin(), rows.end()}, std::move(corners)}, std::move(bound)});
+    DeformableSurface made{{{}, std::move(corners)}, std::move(bound)};
+    if (!layout.is_none()) {
+        const Doubles places(layout, "layout");
+        require_shape(places.array(), "layout", {points.array().shape(0), 3});
+        require_finite(places.values(), "layout", 3);
+        made.layout.assign(places.rows<Vec3>().begin(), places.rows<Vec3>().end());
     }
-    return std::make_shared<Surface>(std::move(points), std::move(corners), std::move(bound));
+    if (!copy)
+        return std::make_shared<Surface>(std::move(points), std::move(made));
+    made.mesh.vertices.assign(points.rows<Vec3>().begin(), points.rows<Vec3>().end());
+    return std::make_shared<Surface>(std::move(made));
 }
 
 py::array vertices_of_surface(const Needed<Surface>& self)
@@ -145,10 +151,8 @@ half : array_like, shape (n, 3), optional
 
 } // namespace
 
-Surface::Surface(Doubles vertices, std::vector<Triangle>&& triangles, Weights&& weights) : at_(&own_)
+Surface::Surface(Doubles vertices, DeformableSurface&& rest) : own_(std::move(rest)), at_(&own_)
 {
-    own_.mesh.triangles = std::move(triangles);
-    own_.weights = std::move(weights);
     const auto rows = vertices.rows<Vec3>();
     const std::vector<py::array> chain = owners(vertices.array());
     if (rows.empty() || chain.empty() || !stands_in(own_.mesh.vertices, rows)) {
@@ -192,6 +196,8 @@ copy : bool, optional
     Copy the vertices in any case, and leave the array as it is.
 normalise : bool, optional
     Divide the weights of each vertex by their sum.
+layout : array_like, shape (V, 3), optional
+    Where the vertices stand when triangles are grouped, for parts with rest spaces of their own.
 
 Raises
 ------
@@ -199,7 +205,7 @@ ValueError
     For shapes, kinds and indices that do not fit, numbers that are not finite, weights that are not convex.
 )")
         .def(py::init(&make_surface), py::arg("vertices"), py::arg("triangles"), py::arg("weights"), py::kw_only(),
-             py::arg("copy") = false, py::arg("normalise") = false)
+             py::arg("copy") = false, py::arg("normalise") = false, py::arg("layout") = py::none())
         .def_property_readonly("vertices", &vertices_of_surface,
                                "Rest vertices, shape (V, 3): the surface's own memory, which cannot be written.")
         .def_property_readonly("triangles", &triangles_of_surface,
