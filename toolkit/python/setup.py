@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Builds the module cinch by CMake, from the source tree that this folder is a part of.
 
-Everything that is made on the way stays in .build/python there, so that a second build takes what the first one made.
+Everything that is made on the way stays in .build/python there, so that a second build takes what the first one made;
+and from ccache, where that is there, whatever any other build of this tree made.
 CINCH_BUILD=FOLDER takes the module from a build folder in which it is built already (cmake -DCINCH_PYTHON=ON);
 CINCH_EXACT=OFF leaves cinch.exact out, CINCH_CMAKE_ARGS are further arguments of CMake's.
 """
@@ -50,7 +51,7 @@ class CMakeBuild(build_ext):
     def run(self):
         made = os.environ.get("CINCH_BUILD")
         if not made:
-            made = room / "build"
+            made = room
             configured(made)
             jobs = os.environ.get("CMAKE_BUILD_PARALLEL_LEVEL", str(os.cpu_count() or 1))
             subprocess.run(["cmake", "--build", made, "--target", "cinch_python", "--parallel", jobs], check=True)
