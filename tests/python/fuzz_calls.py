@@ -176,7 +176,7 @@ class Fuzz:
             lambda: cinch.swept_leaf_pairs([(o(bvh), o(self.box_of(bvh)))] * self.r.choice([0, 1, 2]), kdop=o(6)),
             lambda: cinch.swept(o(self.box_of(bvh)), o(self.box_of(bvh))),
             lambda: cinch.read_character(self.character_file(), morphs=o(True), partial=o(False)),
-            lambda: character.sample(o(None), o(self.r.choice([5, 30, 1e-9, 1e9]))),
+            lambda: character.sample(o(None), o(self.r.choice([5, 30, 1e-9, 1e4, 1e13]))),
             lambda: character.with_any_weights(o(0), o(1)),
             lambda: cinch.build_bvh(character.surface, 16),
             lambda: cinch.ClipBounder(o(character), o(None), o(bvh), **self.options()),

@@ -65,15 +65,33 @@ py::array_t<double> all_maps(const ClipObject& self)
 
 py::array_t<double> all_weights(const ClipObject& self)
 {
+    const std::size_t count = self.clip.frame_count();
     std::vector<double> flat;
-    const auto count = self.clip.frame_count();
-    std::size_t each = 0;
-    for (std::size_t f = 0; f < count; ++f) {
-        const std::vector<double> weights = self.clip.weights(f);
-        each = weights.size();
-        flat.insert(flat.end(), weights.begin(), weights.end());
+    if (self.clip.displaces()) {
+        Ticker tick;
+        const py::gil_scoped_release unlocked;
+        for (std::size_t f = 0; f < count; ++f) {
+            const std::vector<double> weights = self.clip.weights(f);
+            flat.insert(flat.end(), weights.begin(), weights.end());
+            tick(f, count);
+        }
     }
-    return copied<double>(flat, {static_cast<py::ssize_t>(count), static_cast<py::ssize_t>(each)});
+    return copied<double>(flat,
+                          {static_cast<py::ssize_t>(count), static_cast<py::ssize_t>(count ? flat.size() / count : 0)});
+}
+
+py::array_t<double> all_times(const ClipObject& self)
+{
+    const std::size_t count = self.clip.frame_count();
+    py::array_t<double> out(static_cast<py::ssize_t>(count));
+    double* const to = out.mutable_data();
+    Ticker tick;
+    const py::gil_scoped_release unlocked;
+    for (std::size_t f = 0; f < count; ++f) {
+        to[f] = self.clip.time_s(f);
+        tick(f, count);
+    }
+    return out;
 }
 
 void add_clip(py::module_& module)
@@ -97,15 +115,7 @@ maps : array_like, shape (frames, J, 3, 4)
         .def_property_readonly(
             "displaces", [](const ClipObject& self) { return self.clip.displaces(); },
             "Whether morph targets displace vertices.")
-        .def_property_readonly(
-            "times",
-            [](const ClipObject& self) {
-                py::array_t<double> out(static_cast<py::ssize_t>(self.clip.frame_count()));
-                for (std::size_t f = 0; f < self.clip.frame_count(); ++f)
-                    out.mutable_data()[f] = self.clip.time_s(f);
-                return out;
-            },
-            "Seconds, shape (frames,).")
+        .def_property_readonly("times", &all_times, "Seconds, shape (frames,).")
         .def_property_readonly("maps", &all_maps, "Of all frames, shape (frames, J, 3, 4).")
         .def_property_readonly("weights", &all_weights,
                                "Of all morph targets, shape (frames, targets); (frames, 0) where none displaces.")
