@@ -2,6 +2,7 @@
 #include "exact/polytope.hpp"
 
 #include <set>
+#include <stdexcept>
 
 #include <CGAL/Convex_hull_3/dual/halfspace_intersection_3.h>
 #include <CGAL/Convex_hull_3/dual/halfspace_intersection_interior_point_3.h>
@@ -50,6 +51,10 @@ Polytope of_supports(int kdop, const std::vector<Exact>& supports)
 {
     Polytope out;
     const auto axes = axes_of(kdop);
+    // CGAL looks for an interior point of planes in doubles, and GMP ends the process at one that is infinite.
+    for (const Exact& s : supports)
+        if (absolute(s) > Exact(0x1p1000))
+            throw std::length_error("polytope: supports up to 2^1000 are needed");
     std::vector<Plane> planes; // a x + b y + c z + d ≤ 0
     for (std::size_t i = 0; i < supports.size(); ++i) {
         const Axis& axis = axes[i / 2];

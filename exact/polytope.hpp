@@ -18,7 +18,7 @@ struct Polytope {
         redundant; ///< places (as in axes_of) of half-spaces without a facet; not determined for flat or empty sets
 };
 
-/// Of double supports, as refit() gives them; all finite.
+/// Of double supports, as refit() gives them; all finite. Both throw std::length_error for one over 2^1000.
 Polytope polytope(int kdop, std::span<const double> supports);
 
 /// The true k-DOP of one BV: exact supports of its exactly deformed vertices.

@@ -32,6 +32,8 @@ TEST_CASE("flat and empty sets have no volume")
 {
     CHECK(polytope(6, std::vector<double>{1, 1, 2, -2, 1, 1}).volume == "0/1");
     CHECK(polytope(6, std::vector<double>{1, 1, 2, -3, 1, 1}).volume == "0/1");
+    CHECK(polytope(6, std::vector<double>(6, 0x1p999)).vertices == 8);
+    CHECK_THROWS_AS(polytope(6, std::vector<double>(6, 0x1p1001)), std::length_error);
     // Flat across no axis: x + y + z ≤ −1 on [−⅓ …] meets the box in a point only.
     CHECK(polytope(14, std::vector<double>{1, 1, 1, 1, 1, 1, -3, 3, 9, 9, 9, 9, 9, 9}).volume == "0/1");
 }
