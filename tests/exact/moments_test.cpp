@@ -10,6 +10,7 @@
 #include "exact/formulas.hpp"
 #include "tests/support.hpp"
 #include "toolkit/bounds/bound_moments.hpp"
+#include "toolkit/hierarchy/lifted_points.hpp"
 #include "toolkit/hierarchy/moments.hpp"
 
 using namespace cinch;
@@ -23,6 +24,11 @@ using ExactLifted = std::array<Exact, lifted_size>;
 double uniform(Random& random, double most) { return most * (static_cast<double>(random() >> 11) * 0x1p-52 - 1); }
 Exact half(const Exact& x) { return x * Exact(0.5); }
 
+std::size_t place_in(const RestBv& bv, std::uint32_t node)
+{
+    return static_cast<std::size_t>(std::lower_bound(bv.node.begin(), bv.node.end(), node) - bv.node.begin());
+}
+
 // Of vertex k: written from the definition, d and all moments exactly.
 ExactLifted lifted(const DeformableSurface& surface, const RestBv& bv, const RestMoments& rest, std::uint32_t k)
 {
@@ -31,8 +37,7 @@ ExactLifted lifted(const DeformableSurface& surface, const RestBv& bv, const Res
         d[a] = Exact(surface.mesh.vertices[k][a]) - Exact(rest.centre[a]);
     const Weights::Row row = surface.weights.of(k);
     for (std::size_t i = 0; i < row.node.size(); ++i) {
-        const auto j =
-            static_cast<std::size_t>(std::lower_bound(bv.node.begin(), bv.node.end(), row.node[i]) - bv.node.begin());
+        const std::size_t j = place_in(bv, row.node[i]);
         const Vec3& z = rest.influence[j].place;
         for (int a = 0; a < 3; ++a) {
             xi[a] = xi[a] + Exact(row.weight[i]) * Exact(z[a]);
@@ -151,8 +156,7 @@ TEST_CASE("the identity of the moment bound holds for any numbers, exactly")
                 Exact sum = Exact(fit.phi) + times(fit.functional(), lifted(scene.e.surface, rest, moments, k));
                 const Weights::Row row = scene.e.surface.weights.of(k);
                 for (std::size_t i = 0; i < row.node.size(); ++i) {
-                    const auto j = static_cast<std::size_t>(
-                        std::lower_bound(rest.node.begin(), rest.node.end(), row.node[i]) - rest.node.begin());
+                    const auto j = place_in(rest, row.node[i]);
                     const ExactRemainder own = remainder(fit, moments.influence[j].place, moments.centre,
                                                          scene.e.frames[2][row.node[i]], axis);
                     Exact of_node = own.s;
@@ -184,8 +188,7 @@ TEST_CASE("every vertex of a BV lies in its nodes' local boxes about the centre,
         for (std::size_t n = 0; n < vertices.size(); ++n) {
             const Weights::Row row = scene.e.surface.weights.of(vertices[n]);
             for (const std::uint32_t node : row.node) {
-                const auto j = static_cast<std::size_t>(std::lower_bound(rest.node.begin(), rest.node.end(), node) -
-                                                        rest.node.begin());
+                const auto j = place_in(rest, node);
                 for (int a = 0; a < 3; ++a) {
                     const RestBox& box = moments.influence[j].local;
                     const Exact off = Exact(scene.e.surface.mesh.vertices[vertices[n]][a]) - Exact(moments.centre[a]) -
@@ -228,6 +231,57 @@ TEST_CASE("every vertex of a BV lies in its nodes' local boxes about the centre,
     }
     CHECK(all_are_points > 1000);
     CHECK(programs == test::share_of(12));
+}
+
+// By the very combinations from which it was made: it holds what they leave exactly, and little more.
+TEST_CASE("the slack is what convex combinations of the points leave of lifted vertices")
+{
+    const Scene scene(900, 40, 16);
+    std::size_t checked = 0;
+    for (std::size_t bv = 0; bv < scene.bvh.bvs.size(); ++bv) {
+        const RestBv rest = scene.bvh.rest(bv);
+        const RestMoments moments = scene.moments(bv);
+        const auto vertices = scene.vertices(bv);
+        if (moments.point.size() == vertices.size())
+            continue;
+        std::vector<Lifted> rounded;
+        for (const std::uint32_t k : vertices) {
+            const Weights::Row row = scene.e.surface.weights.of(k);
+            std::vector<Vec3> place;
+            for (const std::uint32_t node : row.node)
+                place.push_back(moments.influence[place_in(rest, node)].place);
+            rounded.push_back(lift(scene.e.surface.mesh.vertices[k] - moments.centre, row, place).value);
+        }
+        const LiftedPoints points =
+            choose_lifted(rounded, lifted_scale(scene.bvh.bvs[0].box.half.maxCoeff()), most_lifted_points);
+        ExactLifted least, greatest;
+        for (std::size_t n = 0; n < vertices.size(); ++n) {
+            if (points.combination[n].empty())
+                continue;
+            const ExactLifted own = lifted(scene.e.surface, rest, moments, vertices[n]);
+            Exact sum(0);
+            for (const double alpha : points.combination[n]) {
+                REQUIRE(alpha >= 0);
+                sum = sum + Exact(alpha);
+            }
+            REQUIRE(sum == Exact(1));
+            for (std::size_t c = 0; c < lifted_size; ++c) {
+                Exact left = own[c];
+                for (std::size_t i = 0; i < points.chosen.size(); ++i)
+                    left = left - Exact(points.combination[n][i]) * Exact(moments.point[i][c]);
+                least[c] = left < least[c] ? left : least[c];
+                greatest[c] = maximum(greatest[c], left);
+                ++checked;
+            }
+        }
+        for (std::size_t c = 0; c < lifted_size; ++c) {
+            REQUIRE(greatest[c] <= Exact(moments.greatest[c]));
+            REQUIRE(Exact(moments.least[c]) <= least[c]);
+            REQUIRE(moments.greatest[c] - CGAL::to_double(greatest[c]) < 1e-12);
+            REQUIRE(CGAL::to_double(least[c]) - moments.least[c] < 1e-12);
+        }
+    }
+    CHECK(checked > 10000);
 }
 
 TEST_CASE("no linear functional of lifted vertices exceeds its support over the points and the slack")

@@ -14,8 +14,6 @@
 namespace cinch {
 namespace {
 
-constexpr std::size_t most_lifted_points = 64; // of a BV
-
 // What one BV is made into.
 struct OwnMoments {
     std::vector<Lifted> point;
@@ -51,51 +49,6 @@ private:
     Vec3 low_ = Vec3::Zero(), high_ = Vec3::Zero();
     bool any_ = false;
 };
-
-// A vertex lifted, and how far each component may be off. Of n influences: d is off by u|d|, ξ by γ_n Σ w|z|, M by
-// γ_{n+1} Σ w|z_a z_b|, so leaves of the products and sums of these pass at most n + 4 roundings, and the sums of
-// absolute leaves at most n + 5: (n + 8)u of them leaves room for both, for n < 2²⁰. A product loses at most η/2: n for
-// each ξ, which then meets |d|, and 2n for each M.
-struct LiftedVertex {
-    Lifted value{}, off{};
-};
-
-LiftedVertex lift(const Vec3& d, Weights::Row row, std::span<const Vec3> place)
-{
-    double xi[3] = {}, xi_leaves[3] = {}, m[6] = {}, m_leaves[6] = {}; // m: 00 11 22, 01 02 12
-    static constexpr int first[6] = {0, 1, 2, 0, 0, 1}, second[6] = {0, 1, 2, 1, 2, 2};
-    for (std::size_t i = 0; i < row.node.size(); ++i) {
-        const Vec3& z = place[i];
-        for (int s = 0; s < 3; ++s) {
-            xi[s] += row.weight[i] * z[s];
-            xi_leaves[s] += row.weight[i] * std::abs(z[s]);
-        }
-        for (int c = 0; c < 6; ++c) {
-            const double product = z[first[c]] * z[second[c]];
-            m[c] += row.weight[i] * product;
-            m_leaves[c] += row.weight[i] * std::abs(product);
-        }
-    }
-    LiftedVertex out;
-    const double n = static_cast<double>(row.node.size());
-    const auto set = [&](std::size_t place_of, double value, double leaves, double factor) {
-        out.value[place_of] = value;
-        out.off[place_of] =
-            leaves == 0 ? 0 : succ((n + 8) * unit_roundoff * leaves + (4 * n + 8) * smallest_subnormal * (1 + factor));
-    };
-    const double reach = d.lpNorm<1>();
-    for (std::size_t s = 0; s < 3; ++s) {
-        const auto a = static_cast<int>(s), i = (a + 1) % 3, j = (a + 2) % 3;
-        const int p = first[s + 3], q = second[s + 3];
-        set(s, d[a], std::abs(d[a]), 0);
-        set(3 + s, xi[a] - d[a], xi_leaves[a] + std::abs(d[a]), 0);
-        set(6 + s, d[a] * xi[a] - 0.5 * m[a], std::abs(d[a]) * xi_leaves[a] + 0.5 * m_leaves[a], reach);
-        set(9 + s, (d[p] * xi[q] + d[q] * xi[p]) - m[s + 3],
-            (std::abs(d[p]) * xi_leaves[q] + std::abs(d[q]) * xi_leaves[p]) + m_leaves[s + 3], reach);
-        set(12 + s, d[i] * xi[j] - d[j] * xi[i], std::abs(d[i]) * xi_leaves[j] + std::abs(d[j]) * xi_leaves[i], reach);
-    }
-    return out;
-}
 
 // Of a vertex, less the combination of points: as it is rounded, a sum of at most P products and the difference, P + 2
 // roundings on leaves of at most the greatest of any point and of the vertex; and what its own components are off.
@@ -178,11 +131,7 @@ OwnMoments prepare(const DeformableSurface& surface, const Bvh& bvh, const Bv& b
     for (std::size_t j = 0; j < nodes.size(); ++j)
         influence[j].local = local[j].around();
 
-    // Gradients of displacements are about 1, their change about 1 per unit.
-    Lifted scale;
-    for (std::size_t c = 0; c < lifted_size; ++c)
-        scale[c] = c < 6 ? 1 : 0.5 / unit;
-    const LiftedPoints points = choose_lifted(value, scale, most_lifted_points);
+    const LiftedPoints points = choose_lifted(value, lifted_scale(unit), most_lifted_points);
     OwnMoments own;
     Lifted most{};
     for (const std::uint32_t k : points.chosen) {
