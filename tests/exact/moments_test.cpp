@@ -1,67 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The moment bound in exact arithmetic: its identity, its rest data, and what rounding makes of its parts.
-#include <random>
-
-#include <CGAL/QP_functions.h>
-#include <CGAL/QP_models.h>
+// The moment bound in exact arithmetic: its identity, and what rounding makes of its parts.
 #include <catch2/catch.hpp>
 
 #include "cinch/refit.hpp"
-#include "exact/formulas.hpp"
-#include "tests/support.hpp"
-#include "toolkit/bounds/bound_moments.hpp"
-#include "toolkit/hierarchy/lifted_points.hpp"
-#include "toolkit/hierarchy/moments.hpp"
+#include "tests/exact/lifted_exactly.hpp"
 
 using namespace cinch;
 using namespace cinch::exact;
 
 namespace {
-
-using Random = std::mt19937_64;
-using ExactLifted = std::array<Exact, lifted_size>;
-
-double uniform(Random& random, double most) { return most * (static_cast<double>(random() >> 11) * 0x1p-52 - 1); }
-Exact half(const Exact& x) { return x * Exact(0.5); }
-
-std::size_t place_in(const RestBv& bv, std::uint32_t node)
-{
-    return static_cast<std::size_t>(std::lower_bound(bv.node.begin(), bv.node.end(), node) - bv.node.begin());
-}
-
-// Of vertex k: written from the definition, d and all moments exactly.
-ExactLifted lifted(const DeformableSurface& surface, const RestBv& bv, const RestMoments& rest, std::uint32_t k)
-{
-    Exact d[3], xi[3], m[3][3];
-    for (int a = 0; a < 3; ++a)
-        d[a] = Exact(surface.mesh.vertices[k][a]) - Exact(rest.centre[a]);
-    const Weights::Row row = surface.weights.of(k);
-    for (std::size_t i = 0; i < row.node.size(); ++i) {
-        const std::size_t j = place_in(bv, row.node[i]);
-        const Vec3& z = rest.influence[j].place;
-        for (int a = 0; a < 3; ++a) {
-            xi[a] = xi[a] + Exact(row.weight[i]) * Exact(z[a]);
-            for (int b = 0; b < 3; ++b)
-                m[a][b] = m[a][b] + Exact(row.weight[i]) * Exact(z[a]) * Exact(z[b]);
-        }
-    }
-    const auto both = [&](int a, int b) { return d[a] * xi[b] + d[b] * xi[a] - m[a][b]; };
-    return {d[0],
-            d[1],
-            d[2],
-            xi[0] - d[0],
-            xi[1] - d[1],
-            xi[2] - d[2],
-            half(both(0, 0)),
-            half(both(1, 1)),
-            half(both(2, 2)),
-            both(0, 1),
-            both(0, 2),
-            both(1, 2),
-            d[1] * xi[2] - d[2] * xi[1],
-            d[2] * xi[0] - d[0] * xi[2],
-            d[0] * xi[1] - d[1] * xi[0]};
-}
 
 struct ExactRemainder {
     Exact s;
@@ -92,27 +39,6 @@ ExactRemainder remainder(const MomentFit& fit, const Vec3& z, const Vec3& centre
     return out;
 }
 
-Exact times(const Lifted& functional, const ExactLifted& x)
-{
-    Exact sum(0);
-    for (std::size_t c = 0; c < lifted_size; ++c)
-        sum = sum + Exact(functional[c]) * x[c];
-    return sum;
-}
-
-struct Scene {
-    explicit Scene(std::size_t vertices, std::size_t nodes, std::size_t leaf)
-        : e(test::example(vertices, nodes)), bvh(build_bvh(e.surface, leaf)), data(rest_moments(bvh, e.surface))
-    {
-    }
-    RestMoments moments(std::size_t bv) const { return data.of(bvh.bvs[bv], bv); }
-    std::vector<std::uint32_t> vertices(std::size_t bv) const { return vertices_of(e.surface, bvh, bvh.bvs[bv]); }
-
-    test::Example e;
-    Bvh bvh;
-    MomentData data;
-};
-
 // Maps that are value and gradient of a quadratic motion at the places of the simulation nodes, as they are rounded.
 std::vector<AffineMap> quadratic_maps(std::span<const Vec3> place, Random& random)
 {
@@ -140,7 +66,7 @@ std::vector<AffineMap> quadratic_maps(std::span<const Vec3> place, Random& rando
 
 TEST_CASE("the identity of the moment bound holds for any numbers, exactly")
 {
-    const Scene scene(200, 20, 4);
+    const MomentScene scene(200, 20, 4);
     Random random(1);
     std::size_t checked = 0;
     for (std::size_t bv = 0; bv < scene.bvh.bvs.size(); bv += 3) {
@@ -174,152 +100,11 @@ TEST_CASE("the identity of the moment bound holds for any numbers, exactly")
     CHECK(checked > 1000);
 }
 
-TEST_CASE("every vertex of a BV lies in its nodes' local boxes about the centre, and lifted within the slack of a "
-          "convex combination of the points")
-{
-    const Scene scene(600, 25, 2);
-    std::size_t all_are_points = 0, programs = 0;
-    for (std::size_t bv = 0; bv < scene.bvh.bvs.size(); ++bv) {
-        const RestBv rest = scene.bvh.rest(bv);
-        const RestMoments moments = scene.moments(bv);
-        const auto vertices = scene.vertices(bv);
-        REQUIRE(moments.influence.size() == rest.node.size());
-        REQUIRE(moments.point.size() == std::min<std::size_t>(vertices.size(), 64));
-        for (std::size_t n = 0; n < vertices.size(); ++n) {
-            const Weights::Row row = scene.e.surface.weights.of(vertices[n]);
-            for (const std::uint32_t node : row.node) {
-                const auto j = place_in(rest, node);
-                for (int a = 0; a < 3; ++a) {
-                    const RestBox& box = moments.influence[j].local;
-                    const Exact off = Exact(scene.e.surface.mesh.vertices[vertices[n]][a]) - Exact(moments.centre[a]) -
-                                      Exact(box.centre[a]);
-                    REQUIRE(absolute(off) <= Exact(box.half[a]));
-                }
-            }
-            const ExactLifted own = lifted(scene.e.surface, rest, moments, vertices[n]);
-            if (moments.point.size() == vertices.size()) { // in the same order
-                for (std::size_t c = 0; c < lifted_size; ++c) {
-                    const Exact off = own[c] - Exact(moments.point[n][c]);
-                    REQUIRE(off <= Exact(moments.greatest[c]));
-                    REQUIRE(Exact(moments.least[c]) <= off);
-                    REQUIRE(moments.greatest[c] - moments.least[c] < 1e-13); // the rounding of the points alone
-                }
-                ++all_are_points;
-                continue;
-            }
-            if (n % 97 != bv % 97 % 11 || programs >= test::share_of(12))
-                continue;
-            CGAL::Quadratic_program<Exact> program(CGAL::SMALLER, true, Exact(0), false);
-            for (int i = 0; i < static_cast<int>(moments.point.size()); ++i) {
-                program.set_a(i, 0, Exact(1));
-                for (int c = 0; c < static_cast<int>(lifted_size); ++c)
-                    for (int side = 0; side < 2; ++side)
-                        program.set_a(i, 1 + 2 * c + side,
-                                      Exact(moments.point[static_cast<std::size_t>(i)][static_cast<std::size_t>(c)]));
-            }
-            program.set_b(0, Exact(1));
-            program.set_r(0, CGAL::EQUAL);
-            for (int c = 0; c < static_cast<int>(lifted_size); ++c) {
-                const auto component = static_cast<std::size_t>(c);
-                program.set_b(1 + 2 * c, own[component] - Exact(moments.least[component]));
-                program.set_b(2 + 2 * c, own[component] - Exact(moments.greatest[component]));
-                program.set_r(2 + 2 * c, CGAL::LARGER);
-            }
-            REQUIRE_FALSE(CGAL::solve_linear_program(program, Exact()).is_infeasible());
-            ++programs;
-        }
-    }
-    CHECK(all_are_points > 1000);
-    CHECK(programs == test::share_of(12));
-}
-
-// By the very combinations from which it was made: it holds what they leave exactly, and little more.
-TEST_CASE("the slack is what convex combinations of the points leave of lifted vertices")
-{
-    const Scene scene(900, 40, 16);
-    std::size_t checked = 0;
-    for (std::size_t bv = 0; bv < scene.bvh.bvs.size(); ++bv) {
-        const RestBv rest = scene.bvh.rest(bv);
-        const RestMoments moments = scene.moments(bv);
-        const auto vertices = scene.vertices(bv);
-        if (moments.point.size() == vertices.size())
-            continue;
-        std::vector<Lifted> rounded;
-        for (const std::uint32_t k : vertices) {
-            const Weights::Row row = scene.e.surface.weights.of(k);
-            std::vector<Vec3> place;
-            for (const std::uint32_t node : row.node)
-                place.push_back(moments.influence[place_in(rest, node)].place);
-            rounded.push_back(lift(scene.e.surface.mesh.vertices[k] - moments.centre, row, place).value);
-        }
-        const LiftedPoints points =
-            choose_lifted(rounded, lifted_scale(scene.bvh.bvs[0].box.half.maxCoeff()), most_lifted_points);
-        ExactLifted least, greatest;
-        for (std::size_t n = 0; n < vertices.size(); ++n) {
-            if (points.combination[n].empty())
-                continue;
-            const ExactLifted own = lifted(scene.e.surface, rest, moments, vertices[n]);
-            Exact sum(0);
-            for (const double alpha : points.combination[n]) {
-                REQUIRE(alpha >= 0);
-                sum = sum + Exact(alpha);
-            }
-            REQUIRE(sum == Exact(1));
-            for (std::size_t c = 0; c < lifted_size; ++c) {
-                Exact left = own[c];
-                for (std::size_t i = 0; i < points.chosen.size(); ++i)
-                    left = left - Exact(points.combination[n][i]) * Exact(moments.point[i][c]);
-                least[c] = left < least[c] ? left : least[c];
-                greatest[c] = maximum(greatest[c], left);
-                ++checked;
-            }
-        }
-        for (std::size_t c = 0; c < lifted_size; ++c) {
-            REQUIRE(greatest[c] <= Exact(moments.greatest[c]));
-            REQUIRE(Exact(moments.least[c]) <= least[c]);
-            REQUIRE(moments.greatest[c] - CGAL::to_double(greatest[c]) < 1e-12);
-            REQUIRE(CGAL::to_double(least[c]) - moments.least[c] < 1e-12);
-        }
-    }
-    CHECK(checked > 10000);
-}
-
-TEST_CASE("no linear functional of lifted vertices exceeds its support over the points and the slack")
-{
-    const Scene scene(900, 40, 16);
-    Random random(2);
-    std::size_t checked = 0;
-    for (std::size_t bv = 0; bv < scene.bvh.bvs.size(); ++bv) {
-        const RestMoments moments = scene.moments(bv);
-        const auto vertices = scene.vertices(bv);
-        if (moments.point.size() == vertices.size())
-            continue;
-        std::vector<ExactLifted> all;
-        for (const std::uint32_t k : vertices)
-            all.push_back(lifted(scene.e.surface, scene.bvh.rest(bv), moments, k));
-        for (int trial = 0; trial < 8; ++trial) {
-            MomentFit fit;
-            const double only = trial < 4 ? 1 : 0x1p-20; // in every other trial some components alone
-            for (Vec3* vector : {&fit.linear, &fit.g, &fit.k, &fit.diagonal, &fit.beside})
-                for (double& x : *vector)
-                    x = uniform(random, random() % 4 == 0 ? 1 : only);
-            const LiftedSupport support = lifted_support(moments, fit);
-            for (const ExactLifted& x : all) {
-                const Exact value = times(fit.functional(), x);
-                REQUIRE(value <= Exact(support.along) + Exact(support.error));
-                REQUIRE(-value <= Exact(support.against) + Exact(support.error));
-                ++checked;
-            }
-        }
-    }
-    CHECK(checked > 3000);
-}
-
 // With the numbers as they are computed. What the errors allow is used to more than a hundredth, so that none is
 // idle, and never beyond.
 TEST_CASE("the parts of the moment bound are within their errors of exact arithmetic")
 {
-    const Scene scene(200, 20, 4);
+    const MomentScene scene(200, 20, 4);
     Random random(3);
     double used_by_nodes = 0, used_by_points = 0;
     const auto share = [](const Exact& off, double error) { return CGAL::to_double(absolute(off)) / error; };
@@ -374,7 +159,7 @@ TEST_CASE("the parts of the moment bound are within their errors of exact arithm
 TEST_CASE("a quadratic motion is bounded by the moments to within rounding, whatever the weights")
 {
     Random random(4);
-    Scene scene(200, 30, 8);
+    MomentScene scene(200, 30, 8);
     scene.e.surface.place.clear();
     for (std::size_t j = 0; j < scene.e.surface.weights.node_count; ++j)
         scene.e.surface.place.emplace_back(uniform(random, 1), uniform(random, 1), uniform(random, 1));
