@@ -109,7 +109,7 @@ void script(Input& input, const InputOptions& options, std::size_t default_nodes
         kernel_weights(input.surface.mesh, nodes, options.support > 0 ? options.support : 2, &alone);
     input.clip = scripted_clip(*motion, nodes.position, options.frames ? options.frames : 4);
     input.clip.name = motion_name;
-    input.nodes = nodes.position;
+    input.nodes = input.surface.place = nodes.position;
     if (nodes.position.size() < wanted)
         input.report.push_back(fmt::format("only {} for {} simulation nodes",
                                            counted(nodes.position.size(), "distinct place", "distinct places"),

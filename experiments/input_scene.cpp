@@ -32,7 +32,7 @@ Inputs load_scene(const InputOptions& options)
         body.simulated = true;
         body.simulation_nodes_fixed = found.scene.bodies[b].nodes == 0;
         body.surface = *simulation.bodies()[b].simulation.surface();
-        body.nodes = simulation.bodies()[b].simulation.body().rest;
+        body.nodes = body.surface.place = simulation.bodies()[b].simulation.body().rest;
         inputs.bodies.push_back(std::move(body));
     }
     std::vector<double> times;

@@ -11,7 +11,8 @@ FACES = [(1, 0, 0), (0, 1, 0), (0, 0, 1)]
 CORNERS = [(1, 1, 1), (1, 1, -1), (1, -1, 1), (1, -1, -1)]
 EDGES = [(1, 1, 0), (1, 0, 1), (0, 1, 1), (1, -1, 0), (1, 0, -1), (0, 1, -1)]
 AXES = {6: FACES, 14: FACES + CORNERS, 18: FACES + EDGES, 26: FACES + CORNERS + EDGES}
-METHODS = ("convex", "sphere", "corners", "eq12", "limited", "local", "support", "linear", "best", "vertices")
+METHODS = ("convex", "sphere", "corners", "eq12", "limited", "local", "support", "linear", "moments", "best",
+           "vertices")
 BOX_METHODS = {"convex", "corners", "eq12", "limited"}
 LONGEST_LINE = 1 << 28  # bytes; a record holds one BV or the transforms of one frame
 HASHES = {"positions", "triangles", "weights", "method"}

@@ -15,6 +15,7 @@
 #include "toolkit/bounds/rounding.hpp"
 #include "toolkit/deform/per_thread.hpp"
 #include "toolkit/hierarchy/dop.hpp"
+#include "toolkit/hierarchy/moments.hpp"
 #include "toolkit/hierarchy/packed_bvh.hpp"
 #include "toolkit/hierarchy/spheres.hpp"
 
@@ -76,13 +77,14 @@ struct Bounder::Parts {
     RefitOptions options;
     RestExtent rest;
     Octets octets;
-    ProjectedMaps<float> single_maps;
-    ProjectedMaps<double> double_maps;
-    KernelParts<float> single;
-    KernelParts<double> twice;
-    std::optional<RestSpheres> spheres;
-    std::span<const AffineMap> maps;
-    mutable PerThread<BoundScratch> scratch;
+    ProjectedMaps<float> single_maps{};
+    ProjectedMaps<double> double_maps{};
+    KernelParts<float> single{};
+    KernelParts<double> twice{};
+    std::optional<RestSpheres> spheres{};
+    std::optional<MomentData> moments{};
+    std::span<const AffineMap> maps{};
+    mutable PerThread<BoundScratch> scratch{};
 
     std::size_t k() const { return static_cast<std::size_t>(options.kdop); }
 
@@ -101,6 +103,11 @@ struct Bounder::Parts {
                          options.rounding, axes, own);
             intersect<double>(supports, own);
         }
+        if (moments) {
+            bound_moments(bvh.rest(bv), moments->of(bvh.bvs[bv], bv), maps, options.rounding, axes, scratch.local(),
+                          own);
+            intersect<double>(supports, own);
+        }
         if (options.methods.contains(Method::vertices)) {
             double most[most_directions];
             std::fill_n(most, k(), -infinite);
@@ -114,23 +121,14 @@ struct Bounder::Parts {
     }
     bool has_others() const
     {
-        return spheres || options.methods.contains(Method::corners) || options.methods.contains(Method::vertices);
+        return spheres || moments || options.methods.contains(Method::corners) ||
+               options.methods.contains(Method::vertices);
     }
 };
 
 Bounder::Bounder(const Bvh& bvh, const DeformableSurface& surface, const RefitOptions& options, Leaves leaves)
-    : parts_(new Parts{bvh,
-                       surface,
-                       options,
-                       rest_extent(bvh, surface, options.rest_shape),
-                       leaves == Leaves::included ? Octets::wanted : Octets::left_out,
-                       {},
-                       {},
-                       {},
-                       {},
-                       {},
-                       {},
-                       {}})
+    : parts_(new Parts{bvh, surface, options, rest_extent(bvh, surface, options.rest_shape),
+                       leaves == Leaves::included ? Octets::wanted : Octets::left_out})
 {
     if (!is_kdop(options.kdop))
         throw std::invalid_argument("k must be " + kdop_names());
@@ -150,6 +148,8 @@ Bounder::Bounder(const Bvh& bvh, const DeformableSurface& surface, const RefitOp
     }
     if (options.methods.contains(Method::sphere))
         parts_->spheres = rest_spheres(bvh, surface);
+    if (options.methods.contains(Method::moments))
+        parts_->moments = rest_moments(bvh, surface);
 }
 
 Bounder::~Bounder() = default;

@@ -7,7 +7,7 @@ Open Scope Z_scope.
 (* man * 2 ^ exn *)
 Record dyadic := Dyadic { man : Z; exn : Z }.
 
-Inductive method := Convex | Sphere | Corners | Eq12 | Limited | Local | Support | Linear | Best | Vertices.
+Inductive method := Convex | Sphere | Corners | Eq12 | Limited | Local | Support | Linear | Moments | Best | Vertices.
 
 Record header := Header {
   methods : list method;

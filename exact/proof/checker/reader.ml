@@ -63,6 +63,7 @@ let method_of name =
   | "local" -> Local
   | "support" -> Support
   | "linear" -> Linear
+  | "moments" -> Moments
   | "best" -> Best
   | "vertices" -> Vertices
   | _ -> refuse "an unknown method"

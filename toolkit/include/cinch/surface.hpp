@@ -117,6 +117,7 @@ struct DeformableSurface {
     Weights weights;            ///< of each of its vertices
     std::vector<Vec3> layout{}; ///< where its vertices stand when triangles are grouped, for parts with rest spaces of
                                 ///< their own; empty: at rest. No bound depends on it, only how tight they are
+    std::vector<Vec3> place{};  ///< of every simulation node at rest; empty where they have none, as joints. As above
 };
 
 /// Displacements d_i of some rest vertices. With weights a, a surface's vertices at rest are v⁰ + Σ_i a_i d_i, before

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <random>
+
+#include "cinch/bvh.hpp"
+#include "exact/formulas.hpp"
+#include "tests/support.hpp"
+#include "toolkit/bounds/bound_moments.hpp"
+#include "toolkit/hierarchy/moments.hpp"
+
+namespace cinch::exact {
+
+/// What tests of the moment bound share: lifted vectors from their definition, and a scene with its rest data.
+using Random = std::mt19937_64;
+using ExactLifted = std::array<Exact, lifted_size>;
+
+inline double uniform(Random& random, double most)
+{
+    return most * (static_cast<double>(random() >> 11) * 0x1p-52 - 1);
+}
+inline Exact half(const Exact& x) { return x * Exact(0.5); }
+
+inline std::size_t place_in(const RestBv& bv, std::uint32_t node)
+{
+    return static_cast<std::size_t>(std::lower_bound(bv.node.begin(), bv.node.end(), node) - bv.node.begin());
+}
+
+// Of vertex k: written from the definition, d and all moments exactly.
+inline ExactLifted lifted(const DeformableSurface& surface, const RestBv& bv, const RestMoments& rest, std::uint32_t k)
+{
+    Exact d[3], xi[3], m[3][3];
+    for (int a = 0; a < 3; ++a)
+        d[a] = Exact(surface.mesh.vertices[k][a]) - Exact(rest.centre[a]);
+    const Weights::Row row = surface.weights.of(k);
+    for (std::size_t i = 0; i < row.node.size(); ++i) {
+        const std::size_t j = place_in(bv, row.node[i]);
+        const Vec3& z = rest.influence[j].place;
+        for (int a = 0; a < 3; ++a) {
+            xi[a] = xi[a] + Exact(row.weight[i]) * Exact(z[a]);
+            for (int b = 0; b < 3; ++b)
+                m[a][b] = m[a][b] + Exact(row.weight[i]) * Exact(z[a]) * Exact(z[b]);
+        }
+    }
+    const auto both = [&](int a, int b) { return d[a] * xi[b] + d[b] * xi[a] - m[a][b]; };
+    return {d[0],
+            d[1],
+            d[2],
+            xi[0] - d[0],
+            xi[1] - d[1],
+            xi[2] - d[2],
+            half(both(0, 0)),
+            half(both(1, 1)),
+            half(both(2, 2)),
+            both(0, 1),
+            both(0, 2),
+            both(1, 2),
+            d[1] * xi[2] - d[2] * xi[1],
+            d[2] * xi[0] - d[0] * xi[2],
+            d[0] * xi[1] - d[1] * xi[0]};
+}
+
+inline Exact times(const Lifted& functional, const ExactLifted& x)
+{
+    Exact sum(0);
+    for (std::size_t c = 0; c < lifted_size; ++c)
+        sum = sum + Exact(functional[c]) * x[c];
+    return sum;
+}
+
+struct MomentScene {
+    explicit MomentScene(std::size_t vertices, std::size_t nodes, std::size_t leaf)
+        : e(test::example(vertices, nodes)), bvh(build_bvh(e.surface, leaf)), data(rest_moments(bvh, e.surface))
+    {
+    }
+    RestMoments moments(std::size_t bv) const { return data.of(bvh.bvs[bv], bv); }
+    std::vector<std::uint32_t> vertices(std::size_t bv) const { return vertices_of(e.surface, bvh, bvh.bvs[bv]); }
+
+    test::Example e;
+    Bvh bvh;
+    MomentData data;
+};
+
+} // namespace cinch::exact

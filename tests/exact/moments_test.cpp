@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The moment bound in exact arithmetic: its identity, and what rounding makes of its parts.
+#include <catch2/catch.hpp>
+
+#include "cinch/refit.hpp"
+#include "tests/exact/lifted_exactly.hpp"
+
+using namespace cinch;
+using namespace cinch::exact;
+
+namespace {
+
+struct ExactRemainder {
+    Exact s;
+    Point<Exact> r;
+};
+
+// s_j and r_j for any numbers.
+ExactRemainder remainder(const MomentFit& fit, const Vec3& z, const Vec3& centre, const AffineMap& map,
+                         const Axis& axis)
+{
+    const auto extremum_at = [&](const Vec3& x) { return extremum<Exact>(x, Vec3::Zero(), map, axis).plus; };
+    const Exact at_zero = extremum_at(Vec3::Zero());
+    Point<Exact> q, hz;
+    for (int a = 0; a < 3; ++a)
+        q[static_cast<std::size_t>(a)] = extremum_at(Vec3::Unit(a)) - at_zero;
+    ExactRemainder out{extremum_at(centre) - Exact(fit.phi), {}};
+    for (std::size_t a = 0; a < 3; ++a) {
+        const auto i = static_cast<int>(a);
+        for (int b = 0; b < 3; ++b) {
+            const double h = i == b ? fit.diagonal[i] : fit.beside[i + b == 1 ? 0 : i + b == 2 ? 1 : 2];
+            hz[a] = hz[a] + Exact(h) * Exact(z[b]);
+        }
+        const int n = (i + 1) % 3, l = (i + 2) % 3;
+        out.r[a] = q[a] - (Exact(fit.linear[i]) - Exact(fit.g[i])) - hz[a] -
+                   (Exact(z[n]) * Exact(fit.k[l]) - Exact(z[l]) * Exact(fit.k[n]));
+        out.s = out.s + half(Exact(z[i]) * hz[a]) - Exact(fit.g[i]) * Exact(z[i]);
+    }
+    return out;
+}
+
+// Maps that are value and gradient of a quadratic motion at the places of the simulation nodes, as they are rounded.
+std::vector<AffineMap> quadratic_maps(std::span<const Vec3> place, Random& random)
+{
+    Eigen::Matrix3d linear, quadratic[3];
+    for (int i = 0; i < 9; ++i) {
+        linear(i) = uniform(random, 1);
+        for (auto& q : quadratic)
+            q(i) = uniform(random, 1);
+    }
+    std::vector<AffineMap> maps;
+    for (const Vec3& at : place) {
+        AffineMap map;
+        for (int r = 0; r < 3; ++r) {
+            const Vec3 row = linear.row(r).transpose() + (quadratic[r] + quadratic[r].transpose()) * at;
+            for (int s = 0; s < 3; ++s)
+                map.m[r][s] = row[s];
+            map.m[r][3] = linear.row(r).dot(at) + at.dot(quadratic[r] * at) - row.dot(at);
+        }
+        maps.push_back(map);
+    }
+    return maps;
+}
+
+} // namespace
+
+TEST_CASE("the identity of the moment bound holds for any numbers, exactly")
+{
+    const MomentScene scene(200, 20, 4);
+    Random random(1);
+    std::size_t checked = 0;
+    for (std::size_t bv = 0; bv < scene.bvh.bvs.size(); bv += 3) {
+        const RestBv rest = scene.bvh.rest(bv);
+        const RestMoments moments = scene.moments(bv);
+        for (const Axis& axis : {all_axes[0], all_axes[5], all_axes[12]}) {
+            MomentFit fit;
+            fit.phi = uniform(random, 1);
+            for (Vec3* vector : {&fit.linear, &fit.g, &fit.k, &fit.diagonal, &fit.beside})
+                for (double& x : *vector)
+                    x = uniform(random, 1);
+            for (const std::uint32_t k : scene.vertices(bv)) {
+                Exact sum = Exact(fit.phi) + times(fit.functional(), lifted(scene.e.surface, rest, moments, k));
+                const Weights::Row row = scene.e.surface.weights.of(k);
+                for (std::size_t i = 0; i < row.node.size(); ++i) {
+                    const auto j = place_in(rest, row.node[i]);
+                    const ExactRemainder own = remainder(fit, moments.influence[j].place, moments.centre,
+                                                         scene.e.frames[2][row.node[i]], axis);
+                    Exact of_node = own.s;
+                    for (int a = 0; a < 3; ++a)
+                        of_node = of_node + own.r[static_cast<std::size_t>(a)] *
+                                                (Exact(scene.e.surface.mesh.vertices[k][a]) - Exact(moments.centre[a]));
+                    sum = sum + Exact(row.weight[i]) * of_node;
+                }
+                REQUIRE(sum ==
+                        along(deformed<Exact>(scene.e.surface.mesh.vertices[k], row, scene.e.frames[2]), axis, false));
+                ++checked;
+            }
+        }
+    }
+    CHECK(checked > 1000);
+}
+
+// With the numbers as they are computed. What the errors allow is used to more than a hundredth, so that none is
+// idle, and never beyond.
+TEST_CASE("the parts of the moment bound are within their errors of exact arithmetic")
+{
+    const MomentScene scene(200, 20, 4);
+    Random random(3);
+    double used_by_nodes = 0, used_by_points = 0;
+    const auto share = [](const Exact& off, double error) { return CGAL::to_double(absolute(off)) / error; };
+    for (std::size_t bv = 0; bv < scene.bvh.bvs.size(); ++bv) {
+        const RestBv rest = scene.bvh.rest(bv);
+        const RestMoments moments = scene.moments(bv);
+        std::vector<double> plus(rest.node.size()), minus(plus);
+        for (const auto& frame : {scene.e.frames[1], scene.e.frames[2]})
+            for (const Axis& axis : axes_of(14)) {
+                const MomentFit fit = fit_moments(rest, moments, frame, axis);
+                const double error = remainder_extrema(rest, moments, frame, axis, fit, plus, minus);
+                for (std::size_t j = 0; j < rest.node.size(); ++j) {
+                    const MomentInfluence& own = moments.influence[j];
+                    const ExactRemainder exactly = remainder(fit, own.place, moments.centre, frame[rest.node[j]], axis);
+                    Exact position = exactly.s, radius(0);
+                    for (int a = 0; a < 3; ++a) {
+                        const Exact& r = exactly.r[static_cast<std::size_t>(a)];
+                        position = position + r * Exact(own.local.centre[a]);
+                        radius = radius + absolute(r) * Exact(own.local.half[a]);
+                    }
+                    used_by_nodes = std::max({used_by_nodes, share(radius + position - Exact(plus[j]), error),
+                                              share(radius - position - Exact(minus[j]), error)});
+                }
+                const LiftedSupport support = lifted_support(moments, fit);
+                Exact most, least;
+                for (std::size_t i = 0; i < moments.point.size(); ++i) {
+                    ExactLifted point;
+                    for (std::size_t c = 0; c < lifted_size; ++c)
+                        point[c] = Exact(moments.point[i][c]);
+                    const Exact value = Exact(fit.phi) + times(fit.functional(), point);
+                    most = i == 0 || most < value ? value : most;
+                    least = i == 0 || value < least ? value : least;
+                }
+                Exact slack[2];
+                for (std::size_t c = 0; c < lifted_size; ++c) {
+                    const Exact up = Exact(fit.functional()[c]) * Exact(moments.greatest[c]),
+                                down = Exact(fit.functional()[c]) * Exact(moments.least[c]);
+                    slack[0] = slack[0] + maximum(up, down);
+                    slack[1] = slack[1] + maximum(-up, -down);
+                }
+                used_by_points = std::max({used_by_points, share(most + slack[0] - Exact(support.along), support.error),
+                                           share(slack[1] - least - Exact(support.against), support.error)});
+            }
+    }
+    CAPTURE(used_by_nodes, used_by_points);
+    CHECK(used_by_nodes <= 1);
+    CHECK(used_by_nodes > 0.02);
+    CHECK(used_by_points <= 1);
+    CHECK(used_by_points > 0.02);
+}
+
+TEST_CASE("a quadratic motion is bounded by the moments to within rounding, whatever the weights")
+{
+    Random random(4);
+    MomentScene scene(200, 30, 8);
+    scene.e.surface.place.clear();
+    for (std::size_t j = 0; j < scene.e.surface.weights.node_count; ++j)
+        scene.e.surface.place.emplace_back(uniform(random, 1), uniform(random, 1), uniform(random, 1));
+    std::size_t tight = 0;
+    for (int trial = 0; trial < 2; ++trial) {
+        const std::vector<AffineMap> maps = quadratic_maps(scene.e.surface.place, random);
+        std::vector<double> bounds(scene.bvh.bvs.size() * 26);
+        refit(scene.bvh, scene.e.surface, maps, {Method::moments, 26, Rounding::proven}, bounds);
+        for (std::size_t bv = 0; bv < scene.bvh.bvs.size(); ++bv) {
+            const auto vertices = scene.vertices(bv);
+            for (std::size_t d = 0; d < 26; ++d) {
+                Exact truth;
+                for (std::size_t n = 0; n < vertices.size(); ++n) {
+                    const Exact own = along(deformed<Exact>(scene.e.surface.mesh.vertices[vertices[n]],
+                                                            scene.e.surface.weights.of(vertices[n]), maps),
+                                            all_axes[d / 2], d % 2 == 1);
+                    truth = n == 0 || truth < own ? own : truth;
+                }
+                const std::size_t place = bv * 26 + d;
+                REQUIRE(truth <= Exact(bounds[place]));
+                if (vertices.size() > 64)
+                    continue;
+                REQUIRE(bounds[place] - CGAL::to_double(truth) < 1e-12);
+                ++tight;
+            }
+        }
+    }
+    CHECK(tight > 500);
+}
