@@ -40,6 +40,8 @@ Verifier::Verifier(const DeformableSurface& surface, const Bvh& bvh, void (*paus
     require_default_arithmetic();
     require_dyadic_weights(surface);
     require_tree(surface, bvh);
+    if (bvh.detail != RestDetail::all)
+        throw std::invalid_argument("Verifier: the BVH was built without some of its rest data (RestDetail)");
     vertices_.resize(bvh.bvs.size());
     faults_.resize(bvh.bvs.size());
     parallel_blocks(bvh.bvs.size(), 64, [&](std::size_t first, std::size_t last) {

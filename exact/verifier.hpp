@@ -66,9 +66,9 @@ struct FrameVerdict {
 class Verifier {
 public:
     /// Checks the rest data of every BV at once: both must stay as they are from here on, and alive. Throws
-    /// std::invalid_argument if the tree is no tree over the mesh's triangles, a rest vertex is not finite, or the
-    /// weights are not dyadic and convex; std::runtime_error for a changed floating-point environment. `pause` is
-    /// called every few BVs, here and in check(), on any thread: what it throws ends the call.
+    /// std::invalid_argument if the tree is no tree over the mesh's triangles, lacks rest data (RestDetail), a rest
+    /// vertex is not finite, or the weights are not dyadic and convex; std::runtime_error for a changed floating-point
+    /// environment. `pause` is called every few BVs, here and in check(), on any thread: what it throws ends the call.
     /// `targets`: morph targets, of known displacements, that must stay as well; where they displace a BV there is no
     /// statement on weight spaces, and all that a bound gives away is Loss::corner.
     Verifier(const DeformableSurface& surface, const Bvh& bvh, void (*pause)() = nullptr,

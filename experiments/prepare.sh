@@ -7,7 +7,10 @@ packages=(g++ cmake ninja-build ccache git gnuplot-nox catch2 libbenchmark-dev l
   libmeshoptimizer-dev libmpfi-dev libmpfr-dev librapidcheck-dev libtbb-dev lrslib nettle-dev nlohmann-json3-dev
   python3 python3-jsonschema zlib1g-dev)
 test_packages=(chromium chromium-driver clang clang-format coq doxygen gappa libcoq-flocq libcoq-gappa
-  libzarith-ocaml-dev munge ocaml-findlib ocaml-nox pkg-config slurm-client slurmctld slurmd)
+  libzarith-ocaml-dev munge mypy ocaml-findlib ocaml-nox pybind11-dev python3-dev python3-hypothesis
+  python3-matplotlib python3-numpy python3-pip python3-pybind11 python3-pytest python3-setuptools python3-wheel
+  pkg-config slurm-client slurmctld slurmd)
+configuration=() # further arguments of CMake's, for build
 
 # install_packages [NAME...]: those above, and these.
 install_packages() {
@@ -35,13 +38,16 @@ install_packages() {
   "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >&2
 }
 
-# build TARGET...: configures the release preset if that was never done, then builds the targets.
+# build TARGET...: configures the release preset if that was never done, or if there are arguments for it; then builds
+# the targets.
 build() {
   cd "$source"
   mkdir -p .build
   exec 9>.build/lock
   flock 9 # two calls at once take turns
-  [ -f .build/release/build.ninja ] || cmake --preset release >&2
+  if [ ! -f .build/release/build.ninja ] || [ ${#configuration[@]} -gt 0 ]; then
+    cmake --preset release "${configuration[@]}" >&2
+  fi
   cmake --build --preset release --target "$@" | sed -u '/Reading the commit$/d' >&2
   exec 9>&-
 }

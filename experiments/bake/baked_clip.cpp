@@ -5,13 +5,11 @@
 #include <cmath>
 #include <map>
 
-#include "experiments/measure/box_radius.hpp"
 #include "experiments/report/interrupt.hpp"
+#include "toolkit/hierarchy/box_radius.hpp"
 
 namespace cinch {
 namespace {
-
-constexpr double shortest_s = 1.0 / 30, worth_cutting = 0.9;
 
 double radius_of(std::span<const double> supports, std::size_t bv, int kdop)
 {
@@ -109,44 +107,8 @@ private:
 std::vector<BakedInterval> bake_clip(IntervalRefitter& refit, const TimedMotion& motion, const BakeOptions& options,
                                      std::size_t supports)
 {
-    auto bounded = [&](double a, double b) {
-        throw_if_interrupted();
-        BakedInterval out{a, b, std::vector<double>(supports), 0};
-        out.intervals = bound_over(refit, motion, a, b, options.tolerance, out.supports).intervals;
-        return out;
-    };
-    const double first = motion.first_s(), last = motion.last_s(), length = last - first;
-    std::vector<BakedInterval> out;
-    if (options.whole || !(length > 0)) {
-        out.push_back(bounded(first, last));
-    } else if (options.interval_s > 0) {
-        const auto count = static_cast<std::size_t>(std::ceil(length / options.interval_s));
-        auto cut = [&](std::size_t i) {
-            return i == count ? last : first + static_cast<double>(i) * options.interval_s;
-        };
-        for (std::size_t i = 0; i < count; ++i)
-            out.push_back(bounded(cut(i), cut(i + 1)));
-    } else {
-        std::vector<BakedInterval> open{bounded(first, last)}; // the earliest last
-        while (!open.empty()) {
-            BakedInterval whole = std::move(open.back());
-            open.pop_back();
-            const double a = whole.first_s, b = whole.last_s, middle = a + (b - a) / 2;
-            if (b - a >= 2 * shortest_s) {
-                BakedInterval one = bounded(a, middle), two = bounded(middle, b);
-                const double halves = (radius_of(one.supports, 0, options.bounds.kdop) +
-                                       radius_of(two.supports, 0, options.bounds.kdop)) /
-                                      2;
-                if (halves < worth_cutting * radius_of(whole.supports, 0, options.bounds.kdop)) {
-                    open.push_back(std::move(two));
-                    open.push_back(std::move(one));
-                    continue;
-                }
-            }
-            out.push_back(std::move(whole));
-        }
-    }
-    return out;
+    const ClipCuts cuts{options.whole, options.interval_s, options.tolerance};
+    return bake_clip(refit, motion, cuts, supports / refit.kdop(), [](double) { throw_if_interrupted(); });
 }
 
 BakedFigures figures_of(const DeformableSurface& surface, const Bvh& bvh, std::span<const MorphTarget> targets,

@@ -5,19 +5,11 @@
 
 #include "experiments/bake/bake.hpp"
 #include "experiments/measure/race.hpp"
-#include "toolkit/time/bound_over.hpp"
+#include "toolkit/time/bake_clip.hpp"
 
 namespace cinch {
 
-/// The bounds of one interval of a clip.
-struct BakedInterval {
-    double first_s = 0, last_s = 0;
-    std::vector<double> supports; ///< of all BVs, supports[bv·k + d]
-    double intervals = 0;         ///< that it was put together from, mean of the BVs
-};
-
-/// A clip cut into intervals: one, equal ones, or such that a cut in two halves would make the character's box smaller
-/// by less than a tenth on average.
+/// toolkit/time/bake_clip.hpp, until it is interrupted.
 std::vector<BakedInterval> bake_clip(IntervalRefitter& refit, const TimedMotion& motion, const BakeOptions& options,
                                      std::size_t supports);
 

@@ -8,10 +8,10 @@
 
 #include "experiments/cost/cost_rows.hpp"
 #include "experiments/input_checksum.hpp"
-#include "experiments/measure/box_radius.hpp"
 #include "experiments/measure/race.hpp"
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/or_leave.hpp"
+#include "toolkit/hierarchy/box_radius.hpp"
 
 namespace cinch {
 namespace {

@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "cinch/refit.hpp"
-#include "experiments/measure/box_radius.hpp"
 #include "experiments/report/or_leave.hpp"
+#include "toolkit/hierarchy/box_radius.hpp"
 
 namespace cinch {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/measure/box_radius.hpp"
+#include "toolkit/hierarchy/box_radius.hpp"
 
 namespace cinch {
 

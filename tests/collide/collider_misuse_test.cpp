@@ -78,6 +78,22 @@ TEST_CASE("a query before the first update is refused, with and without bodies")
     check_refused(never, "after add()");
 }
 
+TEST_CASE("a tree that the collider builds has the rest data of every method")
+{
+    const Bodies bodies = some_bodies(2);
+    for (const Method method : all_methods) {
+        INFO(name_of(method));
+        LazyOptions options;
+        options.methods = method;
+        options.update = Update::lazy;
+        Collider collider(options);
+        for (const DeformableSurface& surface : bodies.surface)
+            collider.add(surface);
+        collider.update(bodies.frame[0]);
+        CHECK((sorted(collider.pairs()) == bodies.truth()[0]));
+    }
+}
+
 TEST_CASE("after an update that threw queries are refused until one succeeds, and then all pairs are there")
 {
     const Bodies bodies = some_bodies(4);

@@ -146,6 +146,16 @@ TEST_CASE("rest data of boxes parallel to the axes, flat, exchanged, reflected, 
     }
 }
 
+TEST_CASE("a verifier of a tree that lacks rest data is refused")
+{
+    Random random(2);
+    const DeformableSurface surface = skinned(stack(random), random);
+    for (const RestDetail detail : {RestDetail::boxes, RestDetail::inner}) {
+        const Bvh bvh = build_bvh(surface, 3, detail);
+        CHECK_THROWS_AS(Verifier(surface, bvh), std::invalid_argument);
+    }
+}
+
 TEST_CASE("a point lies in an oriented box if and only if a linear program says so, whatever the axes")
 {
     Random random(2);

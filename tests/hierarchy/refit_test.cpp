@@ -180,6 +180,25 @@ TEST_CASE("a BV of more simulation nodes than float takes is bounded in doubles"
     }
 }
 
+TEST_CASE("a refitter of a tree without the rest data of a method is refused, and makes none up")
+{
+    const DeformableSurface surface = test::example(120, 8).surface;
+    for (const RestDetail detail : {RestDetail::boxes, RestDetail::inner, RestDetail::all}) {
+        const Bvh bvh = build_bvh(surface, 4, detail);
+        for (const Method method : all_methods) {
+            INFO(name_of(method));
+            RefitOptions options;
+            options.methods = method;
+            const bool lacks = (detail == RestDetail::boxes && need(method, RestNeed::local)) ||
+                               (detail == RestDetail::inner && need(method, RestNeed::points));
+            if (lacks)
+                CHECK_THROWS_AS(Refitter(bvh, surface, options), std::invalid_argument);
+            else
+                CHECK_NOTHROW(Refitter(bvh, surface, options));
+        }
+    }
+}
+
 TEST_CASE("the default is nowhere clearly looser than Eq. 12: by more than 1 % of the width of its bound")
 {
     std::mt19937_64 random(5);

@@ -53,7 +53,7 @@ struct MethodInfo {
 /// A row for each method, in the order of the enumeration.
 inline constexpr std::array method_table = {
     MethodInfo{Method::convex, "convex", true, true, false, RestNeed::boxes},
-    MethodInfo{Method::sphere, "sphere", false, false, false, RestNeed::boxes},
+    MethodInfo{Method::sphere, "sphere", false, false, false, RestNeed::points},
     MethodInfo{Method::corners, "corners", false, true, false, RestNeed::boxes},
     MethodInfo{Method::eq12, "eq12", true, true, false, RestNeed::boxes},
     MethodInfo{Method::limited, "limited", true, true, false, RestNeed::boxes},
