@@ -234,7 +234,7 @@ Parameters
 t0, t1 : float or array_like, shape (intervals,)
     First and last second, both included, between the clip's own.
 tolerance : float, optional
-    How much wider they may be than bounds at single times, as a share of a BV's greatest half extent.
+    How much wider they may be than bounds at single times, as a share of a BV's half diagonal.
 
 Returns
 -------
@@ -268,7 +268,7 @@ interval : float, optional
 whole : bool, optional
     One interval for the clip.
 tolerance : float, optional
-    How much wider bounds may be than at single times, as a share of a BV's greatest half extent.
+    How much wider bounds may be than at single times, as a share of a BV's half diagonal.
 engine : dict, optional
     How an engine departs from the exact motion, which bounds then hold too: 'float32' (bool), 'nlerp' (bool),
     'joint_error' (float).
