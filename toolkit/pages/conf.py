@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Of Sphinx, which write_sources.py has made the sources for. Beside what it knows: {api}`cinch::Refitter` links to that in
+the headers' pages, {api}`text <page.html>` to one of these, and signatures of compiled functions are those of their stubs."""
+import ast
+import pathlib
+import xml.etree.ElementTree as Tree
+
+from docutils import nodes
+from sphinx.util import logging
+from sphinx.util.nodes import split_explicit_title
+
+here = pathlib.Path(__file__).resolve().parent
+root = here.parents[1]
+
+project = "cinch"
+copyright = "the authors of cinch; the toolkit under Apache-2.0, the rest under GPL-3.0-or-later"
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.autosummary", "sphinx.ext.napoleon"]
+exclude_patterns = ["project"]
+nitpick_ignore = []
+default_role = "py:obj"
+highlight_language = "text"
+html_theme = "furo"
+html_title = "cinch"
+html_static_path = [str(here / "site.css")]
+html_css_files = ["site.css"]
+html_show_sphinx = False
+html_show_sourcelink = False
+html_copy_source = False
+html_use_index = True
+html_theme_options = {"top_of_page_button": None}
+pygments_style = "default"
+pygments_dark_style = "monokai"
+myst_heading_anchors = 3
+autosummary_generate = False
+autodoc_member_order = "bysource"
+autodoc_default_options = {"members": True, "undoc-members": True, "special-members": "__call__"}
+napoleon_google_docstring = False
+napoleon_use_rtype = False
+napoleon_use_ivar = True
+
+
+def signatures():
+    """Qualified name -> '(a, b=…)', from the stubs."""
+    found = {}
+
+    def said(function, bound):
+        def one(argument, default):
+            return argument.arg + ("=…" if default else "")
+
+        given = function.args
+        plain = given.posonlyargs + given.args
+        optional = [None] * (len(plain) - len(given.defaults)) + list(given.defaults)
+        parts = [one(a, d) for a, d in zip(plain, optional)][1 if bound else 0:]
+        if given.vararg:
+            parts.append("*" + given.vararg.arg)
+        elif given.kwonlyargs:
+            parts.append("*")
+        parts += [one(a, d) for a, d in zip(given.kwonlyargs, given.kw_defaults)]
+        return f"({', '.join(parts)})"
+
+    for module, stub in (("cinch", "toolkit/python/cinch/_core.pyi"),
+                         ("cinch.exact", "exact/python/cinch/exact/_exact.pyi")):
+        for thing in ast.parse((root / stub).read_text()).body:
+            if isinstance(thing, ast.FunctionDef):
+                found[f"{module}.{thing.name}"] = said(thing, False)
+            elif isinstance(thing, ast.ClassDef):
+                for member in thing.body:
+                    if isinstance(member, ast.FunctionDef):
+                        static = any(getattr(d, "id", "") == "staticmethod" for d in member.decorator_list)
+                        name = f"{module}.{thing.name}"
+                        found[name if member.name == "__init__" else f"{name}.{member.name}"] = said(member, not static)
+    return found
+
+
+def set_signature(app, what, name, thing, options, signature, returned, known=signatures()):
+    return (known.get(name, "()" if what in ("function", "method") else ""), None)
+
+
+def headers(tags):
+    """Qualified name -> address within the site, from Doxygen's tags; the first of overloads."""
+    found = {}
+    for compound in Tree.parse(tags).getroot().iter("compound"):
+        page, name = compound.findtext("filename"), compound.findtext("name")
+        if compound.get("kind") == "file":
+            page += "" if page.endswith(".html") else ".html"
+            found.setdefault(name, f"cpp/{page}")
+        elif compound.get("kind") in ("class", "struct", "namespace"):
+            found[name] = f"cpp/{page}"
+        outer = "" if compound.get("kind") == "file" else name + "::"
+        for member in compound.iter("member"):
+            if member.findtext("anchorfile"):
+                found.setdefault(outer + member.findtext("name"),
+                                 f"cpp/{member.findtext('anchorfile')}#{member.findtext('anchor')}")
+    return found
+
+
+def add_api_role(app):
+    known = headers(pathlib.Path(app.srcdir) / "cpp.tag")
+    known.update({page.name: f"cpp/{page.name}" for page in (pathlib.Path(app.outdir) / "cpp").glob("*.html")})
+
+    def api(role, raw, text, line, inliner, options={}, content=[]):
+        titled, title, target = split_explicit_title(text)
+        if target not in known:
+            logging.getLogger(__name__).warning("no header has '%s'", target,
+                                                location=(inliner.document.current_source, line))
+        link = nodes.reference(raw, "", refuri=known.get(target, ""), internal=True)
+        link += nodes.Text(title) if titled else nodes.literal(raw, title)
+        return [link], []
+
+    app.add_role("api", api)
+
+
+def setup(app):
+    app.connect("autodoc-process-signature", set_signature)
+    app.connect("builder-inited", add_api_role)
