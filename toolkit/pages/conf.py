@@ -3,6 +3,7 @@
 the headers' pages, {api}`text <page.html>` to one of these, and signatures of compiled functions are those of their stubs."""
 import ast
 import pathlib
+import re
 import xml.etree.ElementTree as Tree
 
 from docutils import nodes
@@ -16,8 +17,8 @@ project = "cinch"
 copyright = "the authors of cinch; the toolkit under Apache-2.0, the rest under GPL-3.0-or-later"
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.autosummary", "sphinx.ext.napoleon"]
 exclude_patterns = ["project"]
-nitpick_ignore = []
 default_role = "py:obj"
+smartquotes = False
 highlight_language = "text"
 html_theme = "furo"
 html_title = "cinch"
@@ -110,6 +111,35 @@ def add_api_role(app):
     app.add_role("api", api)
 
 
+def drop_dashes(app, tree, page):
+    """Behind parameters of whom nothing but their type is said."""
+    for paragraph in tree.findall(nodes.paragraph):
+        if isinstance(paragraph.parent, (nodes.field_body, nodes.list_item)) and paragraph.children:
+            last = paragraph[-1]
+            if isinstance(last, nodes.Text) and last.endswith(" \N{EN DASH} "):
+                paragraph[-1] = nodes.Text(last[:-3])
+
+
+def complete_theme(app, fault):
+    """Debian's furo imports a style sheet from the host's root, and a script as a module, which files cannot do: both
+    are put into the file that wants them. And its compiler lost the rule that 'auto' is what the reader's system is."""
+    styles, script = (pathlib.Path(app.outdir) / "_static" / name for name in ("styles/furo.css", "scripts/furo.js"))
+    wanted = "@import url(/javascript/normalize.css/normalize.css);"
+    text = styles.read_text(encoding="utf-8")
+    if wanted in text:
+        normal = pathlib.Path("/usr/share/javascript/normalize.css/normalize.css").read_text(encoding="utf-8")
+        dark = re.search(r'body\[data-theme="dark"\] (\{[^}]*--color[^}]*\})', text).group(1)
+        auto = f"@media screen and (prefers-color-scheme: dark) {{ body[data-theme=auto] {dark} }}"
+        styles.write_text(text.replace(wanted, normal) + auto, encoding="utf-8")
+    wanted = 'import Gumshoe from "./gumshoe-patched.js";'
+    text = script.read_text(encoding="utf-8")
+    if wanted in text:
+        spy = script.with_name("gumshoe-patched.js").read_text(encoding="utf-8")
+        script.write_text(spy + text.replace(wanted, ""), encoding="utf-8")
+
+
 def setup(app):
     app.connect("autodoc-process-signature", set_signature)
     app.connect("builder-inited", add_api_role)
+    app.connect("doctree-resolved", drop_dashes)
+    app.connect("build-finished", complete_theme)

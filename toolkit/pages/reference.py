@@ -15,7 +15,7 @@ def limits(schema):
     parts = []
     for key, sign in (("minimum", "≥"), ("exclusiveMinimum", ">"), ("maximum", "≤"), ("exclusiveMaximum", "<")):
         if key in schema:
-            parts.append(f"{sign} {number(schema[key])}")
+            parts.append(f"{sign}\N{NO-BREAK SPACE}{number(schema[key])}")
     return " and ".join(parts)
 
 
@@ -53,7 +53,9 @@ def meaning(schema):
 
 
 def several(text):
-    return re.sub(r"^(number|integer|string)\b|^\[(vector)\]", lambda m: f"{m[1]}s" if m[1] else f"[{m[2]}s]", text)
+    """'[body](#body)' -> '[bodies](#body)'; what is of one word alone."""
+    return re.sub(r"^(\[?)(number|integer|string|vector|effect|body)\b",
+                  lambda m: m[1] + ("bodies" if m[2] == "body" else m[2] + "s"), text)
 
 
 def cell(text):

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""write_sources.py PROJECT OUT: what Sphinx makes the site of. The pages beside this script, in which a line
+"""write_sources.py PROJECT OUT SITE: what Sphinx makes the site of. The pages beside this script, in which a line
 
     @section FILE "Heading"      is that section of a Markdown file of the project,
     @opening FILE "Heading"      what stands before its first heading,
@@ -9,10 +9,11 @@
     @scenes, @records, @words    are the tables that reference.py makes of the schemas and of the list of words;
 
 and a page per class of Python's modules. Nothing is said twice: what stands elsewhere is taken from there. OUT/project
-is the project itself, for `literalinclude`."""
+is the project itself, for `literalinclude`. What there is in SITE is removed, but for the headers' pages, SITE/cpp."""
 import ast
 import pathlib
 import re
+import shutil
 import sys
 
 import reference
@@ -122,24 +123,24 @@ def python_pages(project):
     return made
 
 
-def main(project, out):
-    project, out = pathlib.Path(project).resolve(), pathlib.Path(out)
-    here = pathlib.Path(__file__).resolve().parent
-    made = python_pages(project)
-    for page in sorted(here.glob("*.md")):
-        made[page.name] = filled(project, page.read_text(encoding="utf-8"))
-    out.mkdir(parents=True, exist_ok=True)
-    for old in out.iterdir():
-        if old.suffix in (".md", ".rst") and old.name not in made:
-            old.unlink()
-    for name, text in made.items():  # those that did not change stay as old as they are
-        if not (out / name).exists() or (out / name).read_text(encoding="utf-8") != text:
-            (out / name).write_text(text, encoding="utf-8")
-    if not (out / "project").is_symlink():
-        (out / "project").symlink_to(project)
+def remove_but(folder, kept):
+    for old in folder.iterdir():
+        if old.name not in kept:
+            shutil.rmtree(old) if old.is_dir() and not old.is_symlink() else old.unlink()
+
+
+def main(project, out, site):
+    project, out, site = pathlib.Path(project).resolve(), pathlib.Path(out), pathlib.Path(site)
+    remove_but(out, ["cpp.tag"])
+    remove_but(site, ["cpp"])
+    for name, text in python_pages(project).items():
+        (out / name).write_text(text, encoding="utf-8")
+    for page in pathlib.Path(__file__).resolve().parent.glob("*.md"):
+        (out / page.name).write_text(filled(project, page.read_text(encoding="utf-8")), encoding="utf-8")
+    (out / "project").symlink_to(project)
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 3:
+    if len(sys.argv) != 4:
         sys.exit(__doc__)
     main(*sys.argv[1:])
