@@ -4,7 +4,7 @@ the headers' pages, {api}`text <page.html>` to one of these, and signatures of c
 import ast
 import pathlib
 import re
-import xml.etree.ElementTree as Tree
+import sys
 
 from docutils import nodes
 from sphinx.util import logging
@@ -12,13 +12,16 @@ from sphinx.util.nodes import split_explicit_title
 
 here = pathlib.Path(__file__).resolve().parent
 root = here.parents[1]
+sys.path.insert(0, str(here))
+import reference  # noqa: E402
 
 project = "cinch"
-copyright = "the authors of cinch; the toolkit under Apache-2.0, the rest under GPL-3.0-or-later"
+copyright = "The toolkit is under Apache-2.0, all the rest under GPL-3.0-or-later."
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.autosummary", "sphinx.ext.napoleon"]
 exclude_patterns = ["project"]
 default_role = "py:obj"
-smartquotes = False
+smartquotes_action = "D"  # dashes alone
+templates_path = [str(here)]
 highlight_language = "text"
 html_theme = "furo"
 html_title = "cinch"
@@ -30,7 +33,7 @@ html_copy_source = False
 html_use_index = True
 html_theme_options = {"top_of_page_button": None}
 pygments_style = "default"
-pygments_dark_style = "monokai"
+pygments_dark_style = "native"
 myst_heading_anchors = 3
 autosummary_generate = False
 autodoc_member_order = "bysource"
@@ -77,35 +80,17 @@ def set_signature(app, what, name, thing, options, signature, returned, known=si
     return (known.get(name, "()" if what in ("function", "method") else ""), None)
 
 
-def headers(tags):
-    """Qualified name -> address within the site, from Doxygen's tags; the first of overloads."""
-    found = {}
-    for compound in Tree.parse(tags).getroot().iter("compound"):
-        page, name = compound.findtext("filename"), compound.findtext("name")
-        if compound.get("kind") == "file":
-            page += "" if page.endswith(".html") else ".html"
-            found.setdefault(name, f"cpp/{page}")
-        elif compound.get("kind") in ("class", "struct", "namespace"):
-            found[name] = f"cpp/{page}"
-        outer = "" if compound.get("kind") == "file" else name + "::"
-        for member in compound.iter("member"):
-            if member.findtext("anchorfile"):
-                found.setdefault(outer + member.findtext("name"),
-                                 f"cpp/{member.findtext('anchorfile')}#{member.findtext('anchor')}")
-    return found
-
-
 def add_api_role(app):
-    known = headers(pathlib.Path(app.srcdir) / "cpp.tag")
+    known = reference.headers(pathlib.Path(app.srcdir) / "cpp.tag")
     known.update({page.name: f"cpp/{page.name}" for page in (pathlib.Path(app.outdir) / "cpp").glob("*.html")})
 
     def api(role, raw, text, line, inliner, options={}, content=[]):
-        titled, title, target = split_explicit_title(text)
+        _, title, target = split_explicit_title(text)
         if target not in known:
             logging.getLogger(__name__).warning("no header has '%s'", target,
                                                 location=(inliner.document.current_source, line))
         link = nodes.reference(raw, "", refuri=known.get(target, ""), internal=True)
-        link += nodes.Text(title) if titled else nodes.literal(raw, title)
+        link += nodes.Text(title) if target.endswith(".html") else nodes.literal(raw, title)
         return [link], []
 
     app.add_role("api", api)

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Markdown of the schemas of scenes and of records, and of the list of words."""
+"""Markdown of the schemas of scenes and of records, and of the list of words; where headers' names have their pages."""
 import json
 import re
+import xml.etree.ElementTree as Tree
 
 names = {"vector": "vector", "cells": "cells", "nodes": "simulation nodes", "bodies": "bodies", "body": "body",
          "effect": "effect"}
@@ -118,3 +119,21 @@ def words(project):
         made.append("\n".join(terms) + "\n: " + (f"{sign}, {rest}" if sign else rest[0].upper() + rest[1:])
                     + ("" if rest.endswith(".") else "."))
     return made and "```{glossary}\n" + "\n\n".join(g.replace("\n: ", "\n  ") for g in made) + "\n```"
+
+
+def headers(tags):
+    """Qualified name -> address within the site, from Doxygen's tags; the first of overloads."""
+    found = {}
+    for compound in Tree.parse(tags).getroot().iter("compound"):
+        page, name = compound.findtext("filename"), compound.findtext("name")
+        if compound.get("kind") == "file":
+            page += "" if page.endswith(".html") else ".html"
+            found.setdefault(name, f"cpp/{page}")
+        elif compound.get("kind") in ("class", "struct", "namespace"):
+            found[name] = f"cpp/{page}"
+        outer = "" if compound.get("kind") == "file" else name + "::"
+        for member in compound.iter("member"):
+            if member.findtext("anchorfile"):
+                found.setdefault(outer + member.findtext("name"),
+                                 f"cpp/{member.findtext('anchorfile')}#{member.findtext('anchor')}")
+    return found

@@ -27,6 +27,9 @@ sections = {"a-proof-that-others-can-check": "proof.md"}
 modules = {"cinch": "toolkit/python/cinch/_core.pyi", "cinch.exact": "exact/python/cinch/exact/_exact.pyi"}
 
 
+tags = None  # of the headers' pages
+
+
 def link_within(document, project):
     """Of a match of [text](target) or ![text](target) in that document: what stands for it on the site."""
     def one(match):
@@ -69,6 +72,11 @@ def section(project, document, heading):
 def linked(project, document, text):
     parts = re.split(r"(^```.*?^```$)", text, flags=re.M | re.S)  # code stays as it is
     parts[::2] = [re.sub(r"(!?)\[([^\]]*)\]\(([^)\s]+)\)", link_within(document, project), p) for p in parts[::2]]
+    if document == "toolkit/README.md":  # names of headers and of what they declare
+        known = reference.headers(tags)
+        parts[::2] = [re.sub(r"`([A-Z]\w+(?:::\w+)?|\w+_\w+|\w+\.hp*)`", lambda m: next(
+            (f"{{api}}`{m[1]} <{name}>`" for name in ("cinch::" + m[1], m[1]) if name in known), m[0]), p)
+            for p in parts[::2]]
     return "".join(parts)
 
 
@@ -130,8 +138,10 @@ def remove_but(folder, kept):
 
 
 def main(project, out, site):
+    global tags
     project, out, site = pathlib.Path(project).resolve(), pathlib.Path(out), pathlib.Path(site)
-    remove_but(out, ["cpp.tag"])
+    tags = out / "cpp.tag"
+    remove_but(out, [tags.name])
     remove_but(site, ["cpp"])
     for name, text in python_pages(project).items():
         (out / name).write_text(text, encoding="utf-8")
