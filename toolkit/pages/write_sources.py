@@ -24,6 +24,7 @@ pages = {"README.md": "index.md", "toolkit/README.md": "headers.md", "data/scene
          "tests/examples/character_bounds.cpp": "character.md", "tests/examples/c_bounds.c": "character.md",
          "tests/examples/load_bounds.cpp": "engine.md"}
 sections = {"a-proof-that-others-can-check": "proof.md"}
+constants = {"kdops": "Every k for which there are k-DOPs; their axes are `axes` of k."}
 modules = {"cinch": "toolkit/python/cinch/_core.pyi", "cinch.exact": "exact/python/cinch/exact/_exact.pyi"}
 
 
@@ -123,6 +124,9 @@ def python_pages(project):
             text += [kind, "-" * len(kind), "", f".. currentmodule:: {module}", "", ".. autosummary::", ""]
             text += [f"   {name}" for name in names] + [""]
         text += [f".. autofunction:: {name}\n" for name in functions]
+        for name in [t.target.id for t in ast.parse((project / modules[module]).read_text()).body
+                     if isinstance(t, ast.AnnAssign) and not t.target.id.startswith("_")]:
+            text += [f".. py:data:: {name}\n\n   {constants[name]}\n"]
         text += [".. toctree::", "   :hidden:", ""] + [f"   {module}.{name}" for name in classes]
         made[f"{module}.rst"] = "\n".join(text) + "\n"
         for name in classes:
