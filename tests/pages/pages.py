@@ -55,7 +55,7 @@ class Page(html.parser.HTMLParser):
             self.links[-1][1] += data
         if "h1" in self.inside:
             self.h1 += data
-        if "dd" in self.inside and self.inside[-1] != "dt" and self.terms:
+        if self.terms and next((tag for tag in reversed(self.inside) if tag in ("dt", "dd")), "") == "dd":
             self.said[self.terms[-1]] += data
 
 

@@ -35,7 +35,8 @@ def links(site, source):
             if not address.startswith("data:") and (target is None or target[0] not in site.files):
                 yield f"{name}: no file: url({address})"
     for name in sorted(site.files):
-        if name.endswith(".js") and re.search(r"^\s*import\b.*from|\.src\s*=\s*[\"'`](?:https?:)?//", site.read(name), re.M):
+        wanted = r"^\s*import\b.*from|\.src\s*=\s*[\"'`](?:https?:)?//"
+        if name.endswith(".js") and re.search(wanted, site.read(name), re.M):
             yield f"{name}: a script that wants another"
 
 
@@ -114,15 +115,17 @@ def clicks(site, source):
     if not found:
         yield "index.html: bounds of my character are not within two clicks"
     direct = {site.target("index.html", address) for address, _ in start.links}
-    yield from (f"index.html: no link to {place}" for place in sorted(places) if ("character.html", place) not in direct)
+    yield from (f"index.html: no link to {place}" for place in sorted(places)
+                if ("character.html", place) not in direct)
     reached = site.within("index.html", 8)
     yield from (f"{name}: nothing leads there" for name in sorted(set(site.pages) - reached)
-                if name != "search.html" and not re.search(r"cpp/(dir_|.*-members|functions|globals|namespacemembers)", name))
+                if name != "search.html"
+                and not re.search(r"cpp/(dir_|.*-members|functions|globals|namespacemembers)", name))
 
 
 def code(site, source):
     """Of the sources of the pages."""
-    tested = (source / "tests/examples/CMakeLists.txt").read_text() + (source / "tests/python/CMakeLists.txt").read_text()
+    tested = "".join((source / "tests" / room / "CMakeLists.txt").read_text() for room in ("examples", "python"))
     for path in sorted((source / "toolkit/pages").glob("*.md")):
         text = site.changed.get(path.name) or path.read_text(encoding="utf-8")
         yield from (f"{path.name}: code that no test runs: ```{language}" for language in
@@ -165,9 +168,10 @@ def main(source, folder):
     damaged("cinch.Refitter.html", "The number of directions.", "", "nothing is said of cinch.Refitter.kdop")
     damaged("weights.md", "# My own", "```python\nimport cinch\n```\n# My own", "no test runs",
             (source / "toolkit/pages/weights.md").read_text(encoding="utf-8"))
-    outside = sum(whole.target(name, address) is None for name, page in whole.pages.items() for address, _ in page.links)
-    print(f"{len(whole.pages)} pages, {sum(len(page.links) for page in whole.pages.values())} links, {outside} of them, in "
-          f"texts, to the web; {len(whole.python_names())} names of Python; 11 damages are found")
+    addresses = [(name, address) for name, page in whole.pages.items() for address, _ in page.links]
+    outside = sum(whole.target(*address) is None for address in addresses)
+    print(f"{len(whole.pages)} pages, {len(addresses)} links, {outside} of them, in texts, to the web; "
+          f"{len(whole.python_names())} names of Python; 11 damages are found")
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Of Sphinx, which write_sources.py has made the sources for. Beside what it knows: {api}`cinch::Refitter` links to that in
-the headers' pages, {api}`text <page.html>` to one of these, and signatures of compiled functions are those of their stubs."""
+"""Of Sphinx, which write_sources.py has made the sources for. Beside what it knows: {api}`cinch::Refitter` links to
+that in the headers' pages, {api}`text <page.html>` to one of these, and signatures of compiled functions are those of
+their stubs."""
 import ast
 import pathlib
 import re

@@ -82,7 +82,7 @@ def scenes(project):
     for one in schema["properties"]["integrator"]["oneOf"]:
         text += [f"### {one['properties']['method']['const']}", fields(one)]
     text += ["## Body", fields(parts["body"]),
-             "What goes with what (a sheet needs a `thickness`) is said by `data/scenes/schema.json`, and by the reader."]
+             "What goes with what (a sheet needs a `thickness`) is in `data/scenes/schema.json`."]
     text += ["### Vector", f"A {kind(parts['vector'])}.", "### Cells", f"A {kind(parts['cells'])}.",
              "### Bodies", f"A {kind(parts['bodies'])}. {meaning(parts['bodies'])}",
              "### Simulation nodes", meaning(parts["nodes"])]

@@ -99,8 +99,8 @@ def filled(project, text):
             blocks = re.findall(r"^```.*?^```$", section(project, document, heading), re.M | re.S)
             return blocks[int(number) - 1]
         return {"scenes": reference.scenes, "records": reference.records, "words": reference.words}[kind](project)
-    return re.sub(r'^@(section|opening|code|intro|scenes|records|words)(?: (\S+))?(?: "([^"]+)")?(?: (\d+))?$', one, text,
-                  flags=re.M)
+    kinds = "section|opening|code|intro|scenes|records|words"
+    return re.sub(rf'^@({kinds})(?: (\S+))?(?: "([^"]+)")?(?: (\d+))?$', one, text, flags=re.M)
 
 
 def stubs(project, module):
@@ -119,7 +119,8 @@ def python_pages(project):
     for module in modules:
         classes, functions = stubs(project, module)
         title = f"The module {module}"
-        text = [title, "=" * len(title), "", f".. automodule:: {module}", "   :no-members:", "   :no-special-members:", ""]
+        text = [title, "=" * len(title), "", f".. automodule:: {module}", "   :no-members:", "   :no-special-members:"]
+        text += [""]
         for kind, names in (("Classes", classes), ("Functions", functions)):
             text += [kind, "-" * len(kind), "", f".. currentmodule:: {module}", "", ".. autosummary::", ""]
             text += [f"   {name}" for name in names] + [""]
