@@ -6,10 +6,10 @@ packages=(g++ cmake ninja-build ccache git gnuplot-nox catch2 libbenchmark-dev l
   libcli11-dev libdraco-dev libeigen3-dev libembree-dev libfcl-dev libfmt-dev libgmp-dev libhwy-dev libjs-three
   libmeshoptimizer-dev libmpfi-dev libmpfr-dev librapidcheck-dev libtbb-dev lrslib nettle-dev nlohmann-json3-dev
   python3 python3-jsonschema zlib1g-dev)
-test_packages=(chromium chromium-driver clang clang-format coq doxygen gappa libcoq-flocq libcoq-gappa
+test_packages=(chromium chromium-driver clang clang-format coq doxygen furo gappa libcoq-flocq libcoq-gappa
   libzarith-ocaml-dev munge mypy ocaml-findlib ocaml-nox pybind11-dev python3-dev python3-hypothesis
-  python3-matplotlib python3-numpy python3-pip python3-pybind11 python3-pytest python3-setuptools python3-wheel
-  pkg-config slurm-client slurmctld slurmd)
+  python3-matplotlib python3-myst-parser python3-numpy python3-pip python3-pybind11 python3-pytest
+  python3-setuptools python3-sphinx python3-wheel pkg-config slurm-client slurmctld slurmd)
 configuration=() # further arguments of CMake's, for build
 
 # install_packages [NAME...]: those above, and these.
