@@ -329,13 +329,3 @@ TEST_CASE("every pass of the dual evaluation tightens the bound, and a remembere
         CHECK(width(s) == Approx(width(looser)).epsilon(1e-4));
     }
 }
-
-TEST_CASE("spheres need no more of a tree than boxes")
-{
-    const test::Example e = test::example(500, 25);
-    const Bvh all = build_bvh(e.surface, 4), boxes = build_bvh(e.surface, 4, RestDetail::boxes);
-    std::vector<double> whole(all.bvs.size() * 6), less = whole;
-    refit(all, e.surface, e.frames[1], {Method::sphere}, whole);
-    refit(boxes, e.surface, e.frames[1], {Method::sphere}, less);
-    CHECK(whole == less);
-}

@@ -12,7 +12,8 @@ static_assert(bit(Method::convex) == CINCH_METHOD_CONVEX && bit(Method::sphere) 
               bit(Method::corners) == CINCH_METHOD_CORNERS && bit(Method::eq12) == CINCH_METHOD_EQ12 &&
               bit(Method::limited) == CINCH_METHOD_LIMITED && bit(Method::local) == CINCH_METHOD_LOCAL &&
               bit(Method::support) == CINCH_METHOD_SUPPORT && bit(Method::linear) == CINCH_METHOD_LINEAR &&
-              bit(Method::best) == CINCH_METHOD_BEST && bit(Method::vertices) == CINCH_METHOD_VERTICES);
+              bit(Method::moments) == CINCH_METHOD_MOMENTS && bit(Method::best) == CINCH_METHOD_BEST &&
+              bit(Method::vertices) == CINCH_METHOD_VERTICES);
 
 constexpr int most_passes = 1000; // each takes the time of a bound
 

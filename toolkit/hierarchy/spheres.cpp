@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "toolkit/bounds/rounding.hpp"
-#include "toolkit/deform/dyadic.hpp"
 #include "toolkit/deform/parallel.hpp"
 #include "toolkit/surface/length.hpp"
 
@@ -51,15 +50,10 @@ RestSpheres rest_spheres(const Bvh& bvh, const DeformableSurface& surface)
                         weight[node] = 0;
                 }
             };
-            for (std::size_t j = 0; j < influences.size(); ++j)
+            for (std::size_t j = 0; j < influences.size(); ++j) {
                 influences[j].node = bvh.node[bv.first_influence + j];
-            std::vector<double> mean(influences.size(), 0.0); // as models of weights have it: not all trees have these
-            each_vertex([&](SphereInfluence& j, double w, const Vec3&) {
-                mean[static_cast<std::size_t>(&j - influences.data())] += w / static_cast<double>(vertices.size());
-            });
-            round_dyadic(mean);
-            for (std::size_t j = 0; j < influences.size(); ++j)
-                influences[j].mean = mean[j];
+                influences[j].mean = bvh.model[bv.first_influence + j].mean;
+            }
             each_vertex([&](SphereInfluence& j, double w, const Vec3& y) {
                 j.moment += w * y / static_cast<double>(vertices.size());
             });

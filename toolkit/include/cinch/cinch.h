@@ -243,16 +243,17 @@ CINCH_API cinch_status cinch_bvh_get_indices(const cinch_bvh* bvh, int32_t which
 
 /// Bounding methods, as bits: several are intersected.
 typedef enum cinch_method {
-    CINCH_METHOD_CONVEX = 1,    ///< the greatest extremum: all convex weights
-    CINCH_METHOD_SPHERE = 2,    ///< accumulated-deformation spheres
-    CINCH_METHOD_CORNERS = 4,   ///< all corners of the weight space, O(n^2)
-    CINCH_METHOD_EQ12 = 8,      ///< Eq. 12 of the paper
-    CINCH_METHOD_LIMITED = 16,  ///< the exact optimum over the weight intervals
-    CINCH_METHOD_LOCAL = 32,    ///< a rest box per BV and simulation node
-    CINCH_METHOD_SUPPORT = 64,  ///< a reference map's support of the rest vertices, and `local` for the rest
-    CINCH_METHOD_LINEAR = 128,  ///< an affine model of the weights with residuals
-    CINCH_METHOD_BEST = 256,    ///< per BV whichever of the last three scored best: the default
-    CINCH_METHOD_VERTICES = 512 ///< the vertices themselves
+    CINCH_METHOD_CONVEX = 1,     ///< the greatest extremum: all convex weights
+    CINCH_METHOD_SPHERE = 2,     ///< accumulated-deformation spheres
+    CINCH_METHOD_CORNERS = 4,    ///< all corners of the weight space, O(n^2)
+    CINCH_METHOD_EQ12 = 8,       ///< Eq. 12 of the paper
+    CINCH_METHOD_LIMITED = 16,   ///< the exact optimum over the weight intervals
+    CINCH_METHOD_LOCAL = 32,     ///< a rest box per BV and simulation node
+    CINCH_METHOD_SUPPORT = 64,   ///< a reference map's support of the rest vertices, and `local` for the rest
+    CINCH_METHOD_LINEAR = 128,   ///< an affine model of the weights with residuals
+    CINCH_METHOD_MOMENTS = 256,  ///< first and second moments of the weights
+    CINCH_METHOD_BEST = 512,     ///< per BV whichever of local, support and linear scored best: the default
+    CINCH_METHOD_VERTICES = 1024 ///< the vertices themselves
 } cinch_method;
 
 /// How a surface is bounded; 0: the default.
