@@ -114,7 +114,7 @@ def options(kind):
     for name, number in out._fields_:
         if one_in(2):
             continue
-        choices = {"methods": [1 << chance.randrange(11), chance.getrandbits(10)], "kdop": [6, 14, 18, 26, 7, -6],
+        choices = {"methods": [1 << chance.randrange(12), chance.getrandbits(11)], "kdop": [6, 14, 18, 26, 7, -6],
                    "passes": [1, 2, 3, -1, 2**31 - 1], "level": [0, 1, 2, 5, 2**31 - 1, -1], "update": [0, 1, 2, 3, -1],
                    "lanes": [4, 8, 16, 5, -4]}.get(name, [0, 1, 1, 2])
         setattr(out, name, chance.choice(choices))

@@ -215,7 +215,7 @@ static void test_options(void)
     options.kdop = 7;
     GIVES(CINCH_ERROR_ARGUMENT, cinch_refitter_new(bvh, &options, &refitter), "k must be 6, 14, 18 or 26");
     options.kdop = 0;
-    options.methods = 1024;
+    options.methods = 2 * CINCH_METHOD_VERTICES;
     GIVES(CINCH_ERROR_ARGUMENT, cinch_refitter_new(bvh, &options, &refitter), "methods: there are none");
     options.methods = 0;
     options.passes = -1;

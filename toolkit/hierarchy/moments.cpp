@@ -107,8 +107,11 @@ OwnMoments prepare(const DeformableSurface& surface, const Bvh& bvh, const Bv& b
 {
     const auto nodes = std::span(bvh.node).subspan(bv.first_influence, bv.influence_count);
     const auto models = std::span(bvh.model).subspan(bv.first_influence, bv.influence_count);
-    for (std::size_t j = 0; j < nodes.size(); ++j)
+    std::vector<std::uint32_t> at(place.size()); // of each simulation node among the BV's
+    for (std::size_t j = 0; j < nodes.size(); ++j) {
         influence[j].place = place[nodes[j]] - bv.pivot; // what is rounded is another place, as good
+        at[nodes[j]] = static_cast<std::uint32_t>(j);
+    }
     fit_places(influence, models, unit);
 
     const std::vector<std::uint32_t> vertices = vertices_of(surface, bvh, bv);
@@ -121,9 +124,8 @@ OwnMoments prepare(const DeformableSurface& surface, const Bvh& bvh, const Bv& b
         const Weights::Row row = surface.weights.of(k);
         own_place.clear();
         for (const std::uint32_t node : row.node) {
-            const auto j = static_cast<std::size_t>(std::lower_bound(nodes.begin(), nodes.end(), node) - nodes.begin());
-            own_place.push_back(influence[j].place);
-            local[j].include(d);
+            own_place.push_back(influence[at[node]].place);
+            local[at[node]].include(d);
         }
         lifted.push_back(lift(d, row, own_place));
         value.push_back(lifted.back().value);
