@@ -69,12 +69,28 @@ inline Exact times(const Lifted& functional, const ExactLifted& x)
 }
 
 struct MomentScene {
-    explicit MomentScene(std::size_t vertices, std::size_t nodes, std::size_t leaf)
-        : e(test::example(vertices, nodes)), bvh(build_bvh(e.surface, leaf)), data(rest_moments(bvh, e.surface))
+    /// Coordinates times `scale` and linear parts of maps times `stretch`, powers of two.
+    explicit MomentScene(std::size_t vertices, std::size_t nodes, std::size_t leaf, double scale = 1,
+                         double stretch = 1)
+        : e(scaled(test::example(vertices, nodes), scale, stretch)), bvh(build_bvh(e.surface, leaf)),
+          data(rest_moments(bvh, e.surface))
     {
     }
     RestMoments moments(std::size_t bv) const { return data.of(bvh.bvs[bv], bv); }
     std::vector<std::uint32_t> vertices(std::size_t bv) const { return vertices_of(e.surface, bvh, bvh.bvs[bv]); }
+
+    static test::Example scaled(test::Example e, double scale, double stretch)
+    {
+        for (auto* places : {&e.surface.mesh.vertices, &e.surface.place})
+            for (Vec3& x : *places)
+                x *= scale;
+        for (auto& frame : e.frames)
+            for (AffineMap& map : frame)
+                for (auto& row : map.m)
+                    for (std::size_t s = 0; s < 4; ++s)
+                        row[s] *= s < 3 ? stretch : scale * stretch;
+        return e;
+    }
 
     test::Example e;
     Bvh bvh;
