@@ -297,8 +297,8 @@ TEST_CASE("BVs are bounded over an interval as they are among all, with what is 
                 return out;
             };
             const std::vector<double> all = bounds_of(refit.all()), own = bounds_of(some);
-            for (std::size_t i = 0; i < own.size(); ++i)
-                CHECK(own[i] == all[some[i / 6] * 6 + i % 6]);
+            for (std::size_t s = 0; s < own.size(); ++s)
+                CHECK(own[s] == all[some[s / 6] * 6 + s % 6]);
         }
     }
 }

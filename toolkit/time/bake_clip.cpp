@@ -21,7 +21,7 @@ std::vector<BakedInterval> bake_clip(IntervalRefitter& refit, const TimedMotion&
     auto bounded = [&](double a, double b) {
         poll(a);
         BakedInterval out{a, b, std::vector<double>(bvs * refit.kdop()), 0};
-        out.intervals = bound_over(refit, motion, a, b, cuts.tolerance, out.supports).intervals;
+        out.intervals = bound_over(refit, motion, a, b, cuts.tolerance, out.supports);
         return out;
     };
     const double first = motion.first_s(), last = motion.last_s(), length = last - first;

@@ -65,9 +65,9 @@ public:
         last_ = piece.last;
         last_bvs_ = piece.bvs;
         piece.bound.resize(bvs.size() * k_);
-        count(refit_(bvs, motion, *piece.first, *piece.last, share_of_norms * tolerance_, piece.bound), cost_.refits);
+        refit_(bvs, motion, *piece.first, *piece.last, share_of_norms * tolerance_, piece.bound);
         if (piece.first_s < piece.last_s)
-            count(bvs.size(), cost_.intervals);
+            bounded_ += static_cast<double>(bvs.size());
         std::vector<double> ends(k_);
         std::vector<bool> far(bvs.size());
         for (std::size_t n = 0; n < bvs.size(); ++n) {
@@ -109,17 +109,11 @@ public:
                      std::span(piece.bound).subspan(n * k_, k_));
     }
 
-    const TimeCost& cost() const { return cost_; }
+    double intervals() const { return bounded_ / static_cast<double>(std::max<std::size_t>(refit_.all().size(), 1)); }
 
 private:
-    void count(std::size_t bvs, double& of)
-    {
-        of += static_cast<double>(bvs) / static_cast<double>(refit_.all().size());
-    }
-
     Instant at(BvList bvs, const std::vector<AffineMap>& maps, const std::vector<double>& weights)
     {
-        count(bvs.size(), cost_.refits);
         return std::make_shared<const InstantBounds>(refit_.at(bvs, maps, weights));
     }
 
@@ -189,13 +183,13 @@ private:
     std::vector<bool> marked_;
     Instant last_;
     std::shared_ptr<const std::vector<std::uint32_t>> last_bvs_;
-    TimeCost cost_;
+    double bounded_ = 0; // BVs, in an interval each
 };
 
 } // namespace
 
-TimeCost bound_over(IntervalRefitter& refit, const TimedMotion& motion, double a_s, double b_s, double tolerance,
-                    std::span<double> supports)
+double bound_over(IntervalRefitter& refit, const TimedMotion& motion, double a_s, double b_s, double tolerance,
+                  std::span<double> supports)
 {
     const BvList all = refit.all();
     if (supports.size() != all.size() * refit.kdop())
@@ -247,7 +241,7 @@ TimeCost bound_over(IntervalRefitter& refit, const TimedMotion& motion, double a
             open.push_back({middle, far.last_s, halvings, far.bvs, far.open, {}, far.middle, far.last, {}});
         }
     }
-    return over.cost();
+    return over.intervals();
 }
 
 } // namespace cinch

@@ -118,8 +118,8 @@ InstantBounds IntervalRefitter::at(BvList bvs, std::vector<AffineMap> maps, std:
     return out;
 }
 
-std::size_t IntervalRefitter::operator()(BvList bvs, const MotionInterval& motion, const InstantBounds& first,
-                                         const InstantBounds& last, double enough, std::span<double> supports)
+void IntervalRefitter::operator()(BvList bvs, const MotionInterval& motion, const InstantBounds& first,
+                                  const InstantBounds& last, double enough, std::span<double> supports)
 {
     const std::size_t k = kdop();
     if (supports.size() != bvs.size() * k || first.supports.size() != supports.size() ||
@@ -201,7 +201,6 @@ std::size_t IntervalRefitter::operator()(BvList bvs, const MotionInterval& motio
         });
     }
     merge_children(bvs, supports);
-    return loose.size();
 }
 
 } // namespace cinch

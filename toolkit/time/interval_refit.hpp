@@ -39,9 +39,9 @@ public:
     /// supports[n·k + d] of the n-th BV listed: at every real t of the interval, and of every vertex in exact
     /// arithmetic and as evaluate_vertex computes it from maps that are as near to the exact ones as the ends' are.
     /// `first` and `last`: at its ends, of the same BVs. The bend is left out where without it the bound exceeds theirs
-    /// by at most `enough` of the half diagonal. Returns for how many it was not.
-    std::size_t operator()(BvList bvs, const MotionInterval& motion, const InstantBounds& first,
-                           const InstantBounds& last, double enough, std::span<double> supports);
+    /// by at most `enough` of the half diagonal.
+    void operator()(BvList bvs, const MotionInterval& motion, const InstantBounds& first, const InstantBounds& last,
+                    double enough, std::span<double> supports);
 
     BvList all() const { return all_; } ///< BVs of the tree
     std::size_t kdop() const { return static_cast<std::size_t>(kdop_); }
