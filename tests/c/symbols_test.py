@@ -12,7 +12,7 @@ text = "".join(header.read_text() for header in pathlib.Path(headers, "cinch").g
 declared = set(re.findall(r"CINCH_API [^;]*?\b(cinch_\w+)\(", text))
 lines = subprocess.run([nm, "-D", "--defined-only", library], check=True, capture_output=True, text=True).stdout
 exported = dict(line.split()[:0:-1] for line in lines.splitlines())
-version = {name for name, kind in exported.items() if kind == "A"}
+version = {name.split("@")[0] for name, kind in exported.items() if kind == "A"}  # GNU's nm names it plain, LLVM's not
 assert len(version) == 1 and re.fullmatch(r"CINCH_\d+\.\d+", next(iter(version))), version
 named = {f"{name}@@{next(iter(version))}" for name in declared}
 found = {name for name, kind in exported.items() if kind != "A"}
