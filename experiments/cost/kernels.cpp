@@ -15,7 +15,7 @@ template <class T> struct PreparedKernel {
     KernelScratch<T> scratch;
 };
 
-template <class T> void add(const CostSample& sample, int kdop, const std::vector<ChosenKind>& kinds, Method method,
+template <class T> void add(const CostSample& sample, int kdop, const ChosenKinds& kinds, Method method,
                             std::vector<CostContestant>& all)
 {
     for (const Rounding rounding : {Rounding::plain, Rounding::proven}) {

@@ -4,6 +4,7 @@
 #include "cinch/bounds.hpp"
 #include "tests/support.hpp"
 #include "toolkit/bounds/bound_box.hpp"
+#include "toolkit/bounds/bound_moments.hpp"
 #include "toolkit/bounds/kernel/bound_kernel.hpp"
 #include "toolkit/bounds/readable.hpp"
 #include "toolkit/deform/kernel/targets.hpp"
@@ -117,12 +118,18 @@ TEST_CASE("kernels agree with the formulas of the kinds beyond the ladder, and b
 {
     const Scene scene;
     const std::vector<Vec3>& x = scene.e.surface.mesh.vertices;
+    const MomentData moments = rest_moments(scene.bvh, scene.e.surface);
+    BoundScratch scratch;
     for (const int kdop : {6, 26}) {
         const auto k = static_cast<std::size_t>(kdop);
         std::vector<double> simple(k), also(k);
         const auto formula = [&](Method kind, std::size_t bv, const std::vector<AffineMap>& frame, double start,
                                  std::vector<double>& out) {
-            readable_bound(kind, scene.bvh.rest(bv), x, frame, start, axes_of(kdop), out);
+            if (kind == Method::moments)
+                bound_moments(scene.bvh.rest(bv), moments.of(scene.bvh.bvs[bv], bv), frame, Rounding::plain,
+                              axes_of(kdop), scratch, out, start);
+            else
+                readable_bound(kind, scene.bvh.rest(bv), x, frame, start, axes_of(kdop), out);
         };
         for (const Method method : kernel_methods.without(ladder_methods)) {
             const auto kinds_of = choose_kinds(scene.bvh, scene.e.surface, method);
@@ -131,7 +138,7 @@ TEST_CASE("kernels agree with the formulas of the kinds beyond the ladder, and b
             std::size_t place = 0, equal = 0;
             for (const auto& frame : test::share_of(scene.e.frames))
                 for (std::size_t bv = 0; bv < scene.bvh.bvs.size(); ++bv) {
-                    const ChosenKind& kind = kinds_of[bv];
+                    const ChosenKind& kind = kinds_of.of[bv];
                     formula(kind.kind, bv, frame, kind.start, simple);
                     if (kind.also) {
                         formula(*kind.also, bv, frame, kind.also_start, also);

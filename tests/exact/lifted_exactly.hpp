@@ -42,22 +42,21 @@ inline ExactLifted lifted(const DeformableSurface& surface, const RestBv& bv, co
                 m[a][b] = m[a][b] + Exact(row.weight[i]) * Exact(z[a]) * Exact(z[b]);
         }
     }
-    const auto both = [&](int a, int b) { return d[a] * xi[b] + d[b] * xi[a] - m[a][b]; };
-    return {d[0],
-            d[1],
-            d[2],
-            xi[0] - d[0],
-            xi[1] - d[1],
-            xi[2] - d[2],
-            half(both(0, 0)),
-            half(both(1, 1)),
-            half(both(2, 2)),
-            both(0, 1),
-            both(0, 2),
-            both(1, 2),
-            d[1] * xi[2] - d[2] * xi[1],
-            d[2] * xi[0] - d[0] * xi[2],
-            d[0] * xi[1] - d[1] * xi[0]};
+    ExactLifted out{d[0], d[1], d[2], xi[0] - d[0], xi[1] - d[1], xi[2] - d[2]};
+    for (std::size_t s = 0; s < 3; ++s)
+        for (std::size_t b = 0; b < 3; ++b)
+            out[6 + 3 * s + b] = d[b] * xi[s] - half(m[b][s]);
+    return out;
+}
+
+// Any numbers: each of them up to one, or up to `only`.
+inline MomentFit any_numbers(Random& random, double only)
+{
+    MomentFit fit;
+    for (Vec3* vector : {&fit.linear, &fit.g, &fit.column[0], &fit.column[1], &fit.column[2]})
+        for (double& x : *vector)
+            x = uniform(random, random() % 4 == 0 ? 1 : only);
+    return fit;
 }
 
 inline Exact times(const Lifted& functional, const ExactLifted& x)
@@ -77,6 +76,16 @@ struct MomentScene {
     {
     }
     RestMoments moments(std::size_t bv) const { return data.of(bvh.bvs[bv], bv); }
+    /// Proven 26-DOPs of all BVs, by the readable form.
+    std::vector<double> bounds(std::span<const AffineMap> maps) const
+    {
+        std::vector<double> all(bvh.bvs.size() * 26);
+        BoundScratch scratch;
+        for (std::size_t bv = 0; bv < bvh.bvs.size(); ++bv)
+            bound_moments(bvh.rest(bv), data.of(bvh.bvs[bv], bv), maps, Rounding::proven, axes_of(26), scratch,
+                          std::span(all).subspan(bv * 26, 26));
+        return all;
+    }
     std::vector<std::uint32_t> vertices(std::size_t bv) const { return vertices_of(e.surface, bvh, bvh.bvs[bv]); }
 
     static test::Example scaled(test::Example e, double scale, double stretch)

@@ -20,7 +20,7 @@ TEST_CASE("every vertex of a BV lies in its nodes' local boxes about the centre,
         const RestMoments moments = scene.moments(bv);
         const auto vertices = scene.vertices(bv);
         REQUIRE(moments.influence.size() == rest.node.size());
-        REQUIRE(moments.point.size() == std::min<std::size_t>(vertices.size(), 64));
+        REQUIRE(moments.point.size() == std::min<std::size_t>(vertices.size(), most_lifted_points));
         for (std::size_t n = 0; n < vertices.size(); ++n) {
             const Weights::Row row = scene.e.surface.weights.of(vertices[n]);
             for (const std::uint32_t node : row.node) {
@@ -134,11 +134,7 @@ TEST_CASE("no linear functional of lifted vertices exceeds its support over the 
         for (const std::uint32_t k : vertices)
             all.push_back(lifted(scene.e.surface, scene.bvh.rest(bv), moments, k));
         for (int trial = 0; trial < 8; ++trial) {
-            MomentFit fit;
-            const double only = trial < 4 ? 1 : 0x1p-20; // in every other trial some components alone
-            for (Vec3* vector : {&fit.linear, &fit.g, &fit.k, &fit.diagonal, &fit.beside})
-                for (double& x : *vector)
-                    x = uniform(random, random() % 4 == 0 ? 1 : only);
+            const MomentFit fit = any_numbers(random, trial < 4 ? 1 : 0x1p-20); // or some components alone
             const LiftedSupport support = lifted_support(moments, fit);
             for (const ExactLifted& x : all) {
                 const Exact value = times(fit.functional(), x);

@@ -2,9 +2,9 @@
 // The moment bound in exact arithmetic: its identity, and what rounding makes of its parts.
 #include <catch2/catch.hpp>
 
-#include "cinch/refit.hpp"
 #include "exact/optimum.hpp"
 #include "tests/exact/lifted_exactly.hpp"
+#include "toolkit/hierarchy/lifted_points.hpp"
 #include "toolkit/bounds/rounding.hpp"
 
 using namespace cinch;
@@ -23,23 +23,22 @@ ExactRemainder remainder(const MomentFit& fit, const Vec3& z, const Vec3& centre
 {
     const auto extremum_at = [&](const Vec3& x) { return extremum<Exact>(x, Vec3::Zero(), map, axis).plus; };
     const Exact at_zero = extremum_at(Vec3::Zero());
-    Point<Exact> q, hz;
+    Point<Exact> q, gz;
     for (int a = 0; a < 3; ++a)
         q[static_cast<std::size_t>(a)] = extremum_at(Vec3::Unit(a)) - at_zero;
     ExactRemainder out{extremum_at(centre) - Exact(fit.phi), {}};
     for (std::size_t a = 0; a < 3; ++a) {
         const auto i = static_cast<int>(a);
-        for (int b = 0; b < 3; ++b) {
-            const double h = i == b ? fit.diagonal[i] : fit.beside[i + b == 1 ? 0 : i + b == 2 ? 1 : 2];
-            hz[a] = hz[a] + Exact(h) * Exact(z[b]);
-        }
-        const int n = (i + 1) % 3, l = (i + 2) % 3;
-        out.r[a] = q[a] - (Exact(fit.linear[i]) - Exact(fit.g[i])) - hz[a] -
-                   (Exact(z[n]) * Exact(fit.k[l]) - Exact(z[l]) * Exact(fit.k[n]));
-        out.s = out.s + half(Exact(z[i]) * hz[a]) - Exact(fit.g[i]) * Exact(z[i]);
+        for (int b = 0; b < 3; ++b)
+            gz[a] = gz[a] + Exact(fit.column[b][i]) * Exact(z[b]);
+        out.r[a] = q[a] - (Exact(fit.linear[i]) - Exact(fit.g[i])) - gz[a];
+        out.s = out.s + half(Exact(z[i]) * gz[a]) - Exact(fit.g[i]) * Exact(z[i]);
     }
     return out;
 }
+
+// A coordinate of so few bits that no place is rounded.
+double on_grid(Random& random) { return std::round(uniform(random, 1024)) / 1024; }
 
 // Maps that are value and gradient of a quadratic motion at the places of the simulation nodes, as they are rounded.
 std::vector<AffineMap> quadratic_maps(std::span<const Vec3> place, Random& random)
@@ -129,11 +128,8 @@ TEST_CASE("the identity of the moment bound holds for any numbers, exactly")
         const RestBv rest = scene.bvh.rest(bv);
         const RestMoments moments = scene.moments(bv);
         for (const Axis& axis : {all_axes[0], all_axes[5], all_axes[12]}) {
-            MomentFit fit;
+            MomentFit fit = any_numbers(random, 1);
             fit.phi = uniform(random, 1);
-            for (Vec3* vector : {&fit.linear, &fit.g, &fit.k, &fit.diagonal, &fit.beside})
-                for (double& x : *vector)
-                    x = uniform(random, 1);
             for (const std::uint32_t k : scene.vertices(bv)) {
                 Exact sum = Exact(fit.phi) + times(fit.functional(), lifted(scene.e.surface, rest, moments, k));
                 const Weights::Row row = scene.e.surface.weights.of(k);
@@ -188,8 +184,7 @@ TEST_CASE("a moment bound is at least the sum of its parts and of all their erro
         for (auto& row : map.m)
             for (double& x : row)
                 x = uniform(random, 1);
-    std::vector<double> bounds(scene.bvh.bvs.size() * 26);
-    refit(scene.bvh, scene.e.surface, maps, {Method::moments, 26, Rounding::proven}, bounds);
+    const std::vector<double> bounds = scene.bounds(maps);
     for (std::size_t bv = 0; bv < scene.bvh.bvs.size(); ++bv) {
         const RestBv rest = scene.bvh.rest(bv);
         const RestMoments moments = scene.moments(bv);
@@ -225,12 +220,11 @@ TEST_CASE("a quadratic motion is bounded by the moments to within rounding, what
     MomentScene scene(200, 30, 8);
     scene.e.surface.place.clear();
     for (std::size_t j = 0; j < scene.e.surface.weights.node_count; ++j)
-        scene.e.surface.place.emplace_back(uniform(random, 1), uniform(random, 1), uniform(random, 1));
+        scene.e.surface.place.emplace_back(on_grid(random), on_grid(random), on_grid(random));
     std::size_t tight = 0;
     for (int trial = 0; trial < 2; ++trial) {
         const std::vector<AffineMap> maps = quadratic_maps(scene.e.surface.place, random);
-        std::vector<double> bounds(scene.bvh.bvs.size() * 26);
-        refit(scene.bvh, scene.e.surface, maps, {Method::moments, 26, Rounding::proven}, bounds);
+        const std::vector<double> bounds = scene.bounds(maps);
         for (std::size_t bv = 0; bv < scene.bvh.bvs.size(); ++bv) {
             const auto vertices = scene.vertices(bv);
             for (std::size_t d = 0; d < 26; ++d) {
@@ -243,7 +237,7 @@ TEST_CASE("a quadratic motion is bounded by the moments to within rounding, what
                 }
                 const std::size_t place = bv * 26 + d;
                 REQUIRE(truth <= Exact(bounds[place]));
-                if (vertices.size() > 64)
+                if (vertices.size() > most_lifted_points)
                     continue;
                 REQUIRE(bounds[place] - CGAL::to_double(truth) < 1e-12);
                 ++tight;

@@ -35,27 +35,18 @@ CentredFunctional centred(const Axis& axis, const AffineMap& map, const Vec3& ce
     return f;
 }
 
-// h z; with absolute values of both, its leaves.
-Vec3 h_times(const MomentFit& fit, const Vec3& z)
+// G z; with absolute values of both, its leaves.
+Vec3 g_times(const MomentFit& fit, const Vec3& z)
 {
-    const Vec3 &h = fit.diagonal, &beside = fit.beside;
-    return {(h[0] * z[0] + beside[0] * z[1]) + beside[1] * z[2], (beside[0] * z[0] + h[1] * z[1]) + beside[2] * z[2],
-            (beside[1] * z[0] + beside[2] * z[1]) + h[2] * z[2]};
+    return (z[0] * fit.column[0] + z[1] * fit.column[1]) + z[2] * fit.column[2];
 }
 
 MomentFit leaves_of(const MomentFit& fit)
 {
-    return {std::abs(fit.phi), fit.linear.cwiseAbs(),   fit.g.cwiseAbs(),
-            fit.k.cwiseAbs(),  fit.diagonal.cwiseAbs(), fit.beside.cwiseAbs()};
-}
-
-Vec3 cross_product(const Vec3& z, const Vec3& k)
-{
-    return {z[1] * k[2] - z[2] * k[1], z[2] * k[0] - z[0] * k[2], z[0] * k[1] - z[1] * k[0]};
-}
-Vec3 cross_leaves(const Vec3& z, const Vec3& k)
-{
-    return {z[1] * k[2] + z[2] * k[1], z[2] * k[0] + z[0] * k[2], z[0] * k[1] + z[1] * k[0]};
+    return {std::abs(fit.phi),
+            fit.linear.cwiseAbs(),
+            fit.g.cwiseAbs(),
+            {fit.column[0].cwiseAbs(), fit.column[1].cwiseAbs(), fit.column[2].cwiseAbs()}};
 }
 
 // Of a vertex as evaluated, along an axis: what its simulation node of greatest magnitude makes of the BV's box.
@@ -68,18 +59,29 @@ double world_magnitude(const RestBv& bv, std::span<const AffineMap> maps, const 
     return most;
 }
 
+// At mean b + start·(greatest b − mean b), the mean weighted by h − l.
+double lambda_at(const WeightSpace& space, std::span<const double> b, double greatest, double start)
+{
+    double sum = 0, ranges = 0;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+        sum += (space.h[j] - space.l[j]) * b[j];
+        ranges += space.h[j] - space.l[j];
+    }
+    const double mean = ranges > 0 ? sum / ranges : greatest;
+    return mean + start * (greatest - mean);
+}
+
 } // namespace
 
 Lifted MomentFit::functional() const
 {
     Lifted all;
-    for (std::size_t s = 0; s < 3; ++s) {
-        const auto i = static_cast<int>(s);
-        all[s] = linear[i];
-        all[3 + s] = g[i];
-        all[6 + s] = diagonal[i];
-        all[9 + s] = beside[i];
-        all[12 + s] = k[i];
+    for (std::size_t b = 0; b < 3; ++b) {
+        const auto i = static_cast<int>(b);
+        all[b] = linear[i];
+        all[3 + b] = g[i];
+        for (std::size_t s = 0; s < 3; ++s)
+            all[6 + 3 * s + b] = column[s][i];
     }
     return all;
 }
@@ -87,25 +89,19 @@ Lifted MomentFit::functional() const
 MomentFit fit_moments(const RestBv& bv, const RestMoments& rest, std::span<const AffineMap> maps, const Axis& axis)
 {
     MomentFit fit;
-    Vec3 mean = Vec3::Zero(), column[3] = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}; // of q, and of G
+    Vec3 mean = Vec3::Zero(); // of q
     for (std::size_t j = 0; j < bv.node.size(); ++j) {
         const CentredFunctional f = centred(axis, maps[bv.node[j]], rest.centre);
         const MomentInfluence& own = rest.influence[j];
-        mean += own.intercept * f.q;
+        mean += own.mean * f.q;
         for (int s = 0; s < 3; ++s)
-            column[s] += own.gradient[s] * f.q;
-    }
-    for (int s = 0; s < 3; ++s) {
-        const int a = s == 2 ? 1 : 0, b = s == 0 ? 1 : 2, i = (s + 1) % 3, j = (s + 2) % 3;
-        fit.diagonal[s] = column[s][s];
-        fit.beside[s] = 0.5 * (column[b][a] + column[a][b]);
-        fit.k[s] = 0.5 * (column[j][i] - column[i][j]);
+            fit.column[s] += own.gradient[s] * f.q;
     }
     for (std::size_t j = 0; j < bv.node.size(); ++j) {
         const MomentInfluence& own = rest.influence[j];
         const double value =
-            centred(axis, maps[bv.node[j]], rest.centre).p + 0.5 * product(own.place, h_times(fit, own.place));
-        fit.phi += own.intercept * value;
+            centred(axis, maps[bv.node[j]], rest.centre).p + 0.5 * product(own.place, g_times(fit, own.place));
+        fit.phi += own.mean * value;
         fit.g += value * own.gradient;
     }
     fit.linear = mean + fit.g;
@@ -114,10 +110,10 @@ MomentFit fit_moments(const RestBv& bv, const RestMoments& rest, std::span<const
 
 // Extrema of s_j + r_j·d over each node's own box, along and against the axis; and the greatest error of any. A leaf,
 // a product of what is given, passes at most 10 roundings: A in q 2, r 3, r·d 3, the sums of s, r·d and the radius 2; A
-// in p 6 and the sums 4; h in h z 3, in r 2, and as A from there, or in zᵀhz 3 and the sums 4; k and g fewer. So b̂ is
-// within γ₁₀ M of b, M the sum of the absolute leaves, which is computed from non-negative leaves with at most 14: M ≤
+// in p 6 and the sums 4; G in G z 3, in r 1, and as A from there, or in zᵀGz 3 and the sums 4; g fewer. So b̂ is within
+// γ₁₀ M of b, M the sum of the absolute leaves, which is computed from non-negative leaves with at most 14: M ≤
 // M̂/(1 − γ₁₄) and what it loses below; 16u leaves room for the product and the sum. Products of a node lose at most
-// η/2 each: 15 of factor 1, and 15 of h z and z × k, which then meet d or z: 64η(1 + |z|₁ + |y|₁ + |e|₁) covers both.
+// η/2 each: 15 of factor 1, and 9 of G z, which then meet d or z: 64η(1 + |z|₁ + |y|₁ + |e|₁) covers both.
 double remainder_extrema(const RestBv& bv, const RestMoments& rest, std::span<const AffineMap> maps, const Axis& axis,
                          const MomentFit& fit, std::span<double> plus, std::span<double> minus)
 {
@@ -128,15 +124,14 @@ double remainder_extrema(const RestBv& bv, const RestMoments& rest, std::span<co
         const MomentInfluence& own = rest.influence[j];
         const CentredFunctional f = centred(axis, maps[bv.node[j]], rest.centre);
         const Vec3 &z = own.place, &y = own.local.centre, &e = own.local.half, at = z.cwiseAbs();
-        const Vec3 hz = h_times(fit, z), r = ((f.q + fit.g) - fit.linear) - (hz + cross_product(z, fit.k));
-        const double s = (f.p - fit.phi) + (0.5 * product(z, hz) - product(fit.g, z)), position = s + product(r, y),
+        const Vec3 gz = g_times(fit, z), r = ((f.q + fit.g) - fit.linear) - gz;
+        const double s = (f.p - fit.phi) + (0.5 * product(z, gz) - product(fit.g, z)), position = s + product(r, y),
                      radius = product(r.cwiseAbs(), e);
         plus[j] = radius + position;
         minus[j] = radius - position;
 
-        const Vec3 hz_leaves = h_times(leaves, at),
-                   r_leaves = ((f.q_leaves + leaves.g) + leaves.linear) + (hz_leaves + cross_leaves(at, leaves.k));
-        const double s_leaves = (f.p_leaves + leaves.phi) + (0.5 * product(at, hz_leaves) + product(leaves.g, at)),
+        const Vec3 gz_leaves = g_times(leaves, at), r_leaves = ((f.q_leaves + leaves.g) + leaves.linear) + gz_leaves;
+        const double s_leaves = (f.p_leaves + leaves.phi) + (0.5 * product(at, gz_leaves) + product(leaves.g, at)),
                      own_magnitude = s_leaves + product(r_leaves, y.cwiseAbs() + e);
         magnitude = std::max(magnitude, own_magnitude);
         reach = std::max(reach, (at.lpNorm<1>() + y.lpNorm<1>()) + e.lpNorm<1>());
@@ -181,7 +176,8 @@ LiftedSupport lifted_support(const RestMoments& rest, const MomentFit& fit)
 }
 
 void bound_moments(const RestBv& bv, const RestMoments& rest, std::span<const AffineMap> maps, Rounding rounding,
-                   std::span<const Axis> axes, BoundScratch& scratch, std::span<double> supports)
+                   std::span<const Axis> axes, BoundScratch& scratch, std::span<double> supports,
+                   std::optional<double> start)
 {
     std::fill_n(supports.begin(), 2 * axes.size(), infinite);
     if (!std::all_of(bv.node.begin(), bv.node.end(), [&](std::uint32_t j) { return is_finite(maps[j]); }))
@@ -199,8 +195,9 @@ void bound_moments(const RestBv& bv, const RestMoments& rest, std::span<const Af
         for (std::size_t side = 0; side < 2; ++side) {
             const std::vector<double>& b = side == 0 ? scratch.plus : scratch.minus;
             const double greatest = *std::max_element(b.begin(), b.end()),
-                         remainder = std::min(
-                             greatest, dual_bound(bv.space, b, best_lambda(bv.space, b, scratch.select), rounding)),
+                         lambda = start ? lambda_at(bv.space, b, greatest, *start)
+                                        : best_lambda(bv.space, b, scratch.select),
+                         remainder = std::min(greatest, dual_bound(bv.space, b, lambda, rounding)),
                          of_points = side == 0 ? lifted.along : lifted.against,
                          bound = rounding == Rounding::proven ? succ(succ(of_points + remainder) + error)
                                                               : of_points + remainder;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 #include <span>
 
 #include "cinch/bvh.hpp"
@@ -12,22 +13,22 @@ namespace cinch {
 
 /// A vertex in the lifted space of the moment bound. With d = v⁰ − c, the first moments ξ = Σ_j w_j z_j and the second
 /// moments M = Σ_j w_j z_j z_jᵀ of its weights about the places z_j of the simulation nodes:
-///   d (3),  ξ − d (3),  d_a ξ_a − M_aa/2 (3),  d_a ξ_b + d_b ξ_a − M_ab for ab = 01, 02, 12 (3),  d × ξ (3).
+///   d (3),  ξ − d (3),  and N = d ξᵀ − M/2 by columns (9).
 inline constexpr std::size_t lifted_size = 15;
 using Lifted = std::array<double, lifted_size>;
 
 /// What the moment bound knows of one simulation node, about a BV's centre c. Any numbers are valid but for the box.
 struct MomentInfluence {
-    Vec3 place = Vec3::Zero();    ///< z
-    double intercept = 0;         ///< a, and
-    Vec3 gradient = Vec3::Zero(); ///< f: Σ_j a_j y_j + (Σ_j f_j y_j)·z is the weighted linear fit of values y_j at z_j
+    Vec3 place = Vec3::Zero();    ///< z; of float precision, so that all arithmetics share it
+    double mean = 0;              ///< m, about its mean weight, and
+    Vec3 gradient = Vec3::Zero(); ///< f: Σ_j m_j y_j + (Σ_j f_j y_j)·z is about the weighted linear fit of y_j at z_j
     RestBox local;                ///< holds d of every vertex that the node influences
 };
 
 /// Rest data of the moment bound of one BV. A view; owns nothing. For every vertex some convex combination of the
 /// points differs from its lifted vector by what lies between `least` ≤ 0 and `greatest` ≥ 0, component by component.
 struct RestMoments {
-    Vec3 centre = Vec3::Zero();                 ///< c
+    Vec3 centre = Vec3::Zero();                 ///< c; less the rest origin it is of float precision
     std::span<const MomentInfluence> influence; ///< parallel to RestBv::node
     std::span<const Lifted> point;              ///< at least one
     Lifted least{}, greatest{};
@@ -36,26 +37,28 @@ struct RestMoments {
 /// The numbers that the identity of the moment bound leaves free.
 struct MomentFit {
     double phi = 0;
-    Vec3 linear = Vec3::Zero(), g = Vec3::Zero(), k = Vec3::Zero();
-    Vec3 diagonal = Vec3::Zero(), beside = Vec3::Zero(); ///< of h: 00 11 22, 01 02 12
+    Vec3 linear = Vec3::Zero(), g = Vec3::Zero();
+    Vec3 column[3] = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}; ///< of G
 
     /// What is multiplied with a lifted vector.
     Lifted functional() const;
 };
 
 /// The moment bound: third order in how far the simulation nodes of a BV lie from each other. With q_j = A_jᵀγ, p_j =
-/// γ·(A_j c + t_j), numbers φ, vectors l, g and k and a symmetric matrix h, all arbitrary, and
-///   r_j = q_j − (l − g) − h z_j − z_j × k,   s_j = p_j + z_jᵀ h z_j/2 − φ − g·z_j,
+/// γ·(A_j c + t_j), a number φ, vectors l and g and a matrix G, all arbitrary, and
+///   r_j = q_j − (l − g) − G z_j,   s_j = p_j + z_jᵀ G z_j/2 − φ − g·z_j,
 /// every vertex is exactly
-///   γ·v = φ + l·d + g·(ξ − d) + (dᵀ h ξ − h:M/2) + k·(d × ξ) + Σ_j w_j (s_j + r_j·d):
-/// Σ w_j r_j·d takes from Σ w_j q_j·d what l·d − g·d, dᵀhξ and k·(d × ξ) add, and Σ w_j s_j from Σ w_j p_j what φ, g·ξ
-/// and −h:M/2 add. All but the last sum is linear in the lifted vector: its support over the points, and what the slack
-/// adds. The last sum is D at the best λ over extrema on the nodes' own boxes. The numbers come from linear fits of
-/// q_j and of p_j + z_jᵀ h z_j/2 over z_j, so that s and r are small (they vanish where maps are the values and
-/// gradients of a quadratic motion at the places): whatever rounding makes of the numbers is still exact.
-/// Supports as bound_box, proven likewise.
+///   γ·v = φ + l·d + g·(ξ − d) + G:N + Σ_j w_j (s_j + r_j·d):
+/// Σ w_j r_j·d takes from Σ w_j q_j·d what l·d − g·d and dᵀGξ add, and Σ w_j s_j from Σ w_j p_j what φ, g·ξ and −G:M/2
+/// add. All but the last sum is linear in the lifted vector: its support over the points, and what the slack adds. The
+/// last sum is D at the best λ over extrema on the nodes' own boxes. The numbers come from linear fits of q_j and of
+/// p_j
+/// + z_jᵀ G z_j/2 over z_j, so that s and r are small (they vanish where maps are the values and gradients of a
+/// quadratic motion at the places): whatever rounding makes of the numbers is still exact.
+/// Supports as bound_box, proven likewise. With a `start` λ lies where readable_bound has it.
 void bound_moments(const RestBv& bv, const RestMoments& rest, std::span<const AffineMap> maps, Rounding rounding,
-                   std::span<const Axis> axes, BoundScratch& scratch, std::span<double> supports);
+                   std::span<const Axis> axes, BoundScratch& scratch, std::span<double> supports,
+                   std::optional<double> start = {});
 
 // Its parts, for one axis.
 

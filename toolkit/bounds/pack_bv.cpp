@@ -6,36 +6,12 @@
 #include <limits>
 #include <stdexcept>
 
-#include "toolkit/bounds/rounding.hpp"
+#include "toolkit/bounds/pack_moments.hpp"
+#include "toolkit/bounds/pack_value.hpp"
 #include "toolkit/deform/dyadic.hpp"
 
 namespace cinch {
 namespace {
-
-// A coordinate about the rest origin in T, and a bound on how far it is off. x − o is exact for o = 0.
-template <class T> struct Shifted {
-    T value;
-    double off;
-};
-template <class T> Shifted<T> shifted(double x, double origin)
-{
-    const double d = x - origin;
-    const T value = static_cast<T>(d);
-    const double lost = origin == 0 || d == 0 ? 0 : succ(unit_roundoff * std::abs(d));
-    const double off = std::abs(d - static_cast<double>(value)); // exact: 0, or a difference of neighbours
-    return {value, off == 0 ? lost : succ(off + lost)};
-}
-
-double sum_up(double a, double b) { return b == 0 ? a : a == 0 ? b : succ(a + b); }
-
-template <class T> void put_box(const RestBox& box, const Vec3& origin, T* centre, T* half)
-{
-    for (int s = 0; s < 3; ++s) {
-        const Shifted<T> c = shifted<T>(box.centre[s], origin[s]);
-        centre[s] = c.value;
-        half[s] = round_up<T>(sum_up(box.half[s], c.off));
-    }
-}
 
 // Packs one BV; `value` and `node` grow at their ends.
 template <class T> class Packer {
@@ -44,7 +20,7 @@ public:
 
     void pack(const RestBv& rest, const BvChoice& choice)
     {
-        const auto [kind, start, oriented, guarded] = choice;
+        const auto [kind, start, oriented, guarded, moments] = choice;
         if (out_.node.size() > std::numeric_limits<std::uint32_t>::max() - 8)
             throw std::length_error("pack: over 2^32 influences; use larger leaves");
         if (rest.node.size() > (sizeof(T) == 4 ? most_nodes_in_float : most_nodes_in_double))
@@ -69,9 +45,11 @@ public:
         put_box(rest.box, extent_.origin, bv_.centre, bv_.half);
         if (oriented && are_normal(*oriented)) // else the other box does
             put_oriented(*oriented);
-        if (takes_one_by_one(kind))
+        if (kind == Method::support || kind == Method::linear)
             put_points(rest);
-        if (kind == Method::linear)
+        if (kind == Method::moments)
+            pack_moments<T>(rest, *moments, rounded_means(rest), extent_, bv_, out_.value);
+        else if (kind == Method::linear)
             put_models(rest);
         else if (kind == Method::support)
             put_reference(rest);
@@ -157,21 +135,13 @@ private:
                                      (1 + 16 * static_cast<double>(unit_roundoff_of<T>))));
     }
 
-    void put_interval(const RestBv& rest, std::size_t j, T& l, T& r)
-    {
-        l = round_down<T>(rest.space.l[j]);
-        r = round_up<T>(rest.space.h[j] - static_cast<double>(l)); // dyadic: exact
-        bv_.sum_l += l;
-        bv_.sum_r += r;
-    }
-
     void put_intervals(const RestBv& rest)
     {
         Blocks blocks(*this, rest.node.size(), PackedBv<T>::rows(bv_.kind));
         for (std::size_t i = 0; i < rest.node.size(); ++i) {
             const std::size_t j = order_[i];
             T l, r;
-            put_interval(rest, j, l, r);
+            put_interval(rest.space.l[j], rest.space.h[j], l, r, bv_.sum_l, bv_.sum_r);
             blocks.put(i, 0, l, 0);
             blocks.put(i, 1, r, 0);
             if (bv_.kind != Method::local)
@@ -196,7 +166,7 @@ private:
         for (std::size_t j = 0; j < rest.node.size(); ++j) {
             T own[9];
             put_box(rest.local[j], extent_.origin, own, own + 3);
-            put_interval(rest, j, own[6], own[7]);
+            put_interval(rest.space.l[j], rest.space.h[j], own[6], own[7], bv_.sum_l, bv_.sum_r);
             own[8] = static_cast<T>(means[j]);
             out_.value.insert(out_.value.end(), own, own + 9);
         }

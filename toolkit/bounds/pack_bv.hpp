@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cinch/bvh.hpp"
+#include "toolkit/bounds/bound_moments.hpp"
 #include "toolkit/bounds/packed_bv.hpp"
 #include "toolkit/bounds/projected_maps.hpp"
 #include "toolkit/deform/aligned.hpp"
@@ -24,6 +25,7 @@ struct BvChoice {
     double start = 0;                      ///< PackedBv::start
     const OrientedBox* oriented = nullptr; ///< to be taken instead of the other box, where all of it is normal in T
     bool guarded = false;                  ///< PackedBv::guarded
+    const RestMoments* moments = nullptr;  ///< of the kind moments
 };
 
 /// Appends one BV, everything rounded outward to T; `x` are the rest vertices. Throws std::length_error for a BV of

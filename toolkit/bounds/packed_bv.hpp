@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "cinch/bounds.hpp"
+#include "toolkit/bounds/packed_moments.hpp"
 
 namespace cinch {
 
@@ -13,7 +14,10 @@ namespace cinch {
 inline constexpr std::size_t block_lanes = 8;
 constexpr std::size_t blocks_of(std::size_t count) { return (count + block_lanes - 1) / block_lanes; }
 constexpr std::size_t quads_of(std::size_t points) { return (points + 3) / 4; }
-constexpr bool takes_one_by_one(Method kind) { return kind == Method::support || kind == Method::linear; }
+constexpr bool takes_one_by_one(Method kind)
+{
+    return kind == Method::support || kind == Method::linear || kind == Method::moments;
+}
 
 /// One BV as the kernels read it: rest data in T (float or double), rounded outward, relative to a rest origin that all
 /// BVs of a tree share. Its simulation nodes and values stand in two contiguous runs. Values of the kinds for many, per
@@ -24,11 +28,12 @@ constexpr bool takes_one_by_one(Method kind) { return kind == Method::support ||
 /// simulation node:
 ///   support                 centre (3), half (3), l, r, mean
 ///   linear                  gradient (3), residual, moment (3), mean
+/// and moments as packed_moments.hpp says,
 /// with r = h − l. The real weights lie in [l, l + r], and Σ mean = 1 exactly.
 template <class T> struct PackedBv {
-    Method kind = Method::convex; ///< convex, eq12, limited, local, support or linear
+    Method kind = Method::convex; ///< convex, eq12, limited, local, support, linear or moments
     std::uint32_t count = 0;      ///< simulation nodes
-    std::uint32_t points = 0;     ///< extreme points; 0 for the kinds for many
+    std::uint32_t points = 0;     ///< extreme points, lifted for moments; 0 for the kinds for many
     std::uint32_t first_node = 0;
     std::uint32_t also = 0; ///< place of a second bound of the same BV to intersect with; 0 if there is none
     std::uint32_t guard =
@@ -38,7 +43,7 @@ template <class T> struct PackedBv {
     T centre[4] = {0, 0, 0, 1}, half[4] = {}; ///< rest box, and a 1 for θ
     T axis[3][3] = {};                        ///< and its axes instead of `half` if it is oriented
     bool oriented = false;
-    T pivot[4] = {0, 0, 0, 1}; ///< origin of the points and of the weight model, and a 1 for θ
+    T pivot[4] = {0, 0, 0, 1}; ///< origin of the points and of the model of weights, and a 1 for θ
     T slack = 0; ///< max q·y over all vertices is at most that over the points + slack·‖q‖, also as computed
     T sum_l = 0, sum_r = 0; ///< about; they only steer λ, but sum_l = 0 if and only if every l is
     T start = 0;            ///< λ begins at mean b + start·(greatest b − mean b)
@@ -50,8 +55,13 @@ template <class T> struct PackedBv {
     } ///< of a block; kinds for many
     static constexpr std::size_t values(Method kind)
     {
-        return kind == Method::support ? 9 : 8;
+        return kind == Method::moments ? moment_values : kind == Method::support ? 9 : 8;
     } ///< of a simulation node; kinds for few
+    /// Before those of the simulation nodes; kinds for few.
+    std::size_t values_before() const
+    {
+        return kind == Method::moments ? moment_values_before(points) : 12 * quads_of(points);
+    }
 };
 
 } // namespace cinch

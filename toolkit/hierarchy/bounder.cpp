@@ -15,7 +15,6 @@
 #include "toolkit/bounds/rounding.hpp"
 #include "toolkit/deform/per_thread.hpp"
 #include "toolkit/hierarchy/dop.hpp"
-#include "toolkit/hierarchy/moments.hpp"
 #include "toolkit/hierarchy/packed_bvh.hpp"
 #include "toolkit/hierarchy/spheres.hpp"
 
@@ -82,7 +81,6 @@ struct Bounder::Parts {
     KernelParts<float> single{};
     KernelParts<double> twice{};
     std::optional<RestSpheres> spheres{};
-    std::optional<MomentData> moments{};
     std::span<const AffineMap> maps{};
     mutable PerThread<BoundScratch> scratch{};
 
@@ -103,11 +101,6 @@ struct Bounder::Parts {
                          options.rounding, axes, own);
             intersect<double>(supports, own);
         }
-        if (moments) {
-            bound_moments(bvh.rest(bv), moments->of(bvh.bvs[bv], bv), maps, options.rounding, axes, scratch.local(),
-                          own);
-            intersect<double>(supports, own);
-        }
         if (options.methods.contains(Method::vertices)) {
             double most[most_directions];
             std::fill_n(most, k(), -infinite);
@@ -121,8 +114,7 @@ struct Bounder::Parts {
     }
     bool has_others() const
     {
-        return spheres || moments || options.methods.contains(Method::corners) ||
-               options.methods.contains(Method::vertices);
+        return spheres || options.methods.contains(Method::corners) || options.methods.contains(Method::vertices);
     }
 };
 
@@ -148,8 +140,6 @@ Bounder::Bounder(const Bvh& bvh, const DeformableSurface& surface, const RefitOp
     }
     if (options.methods.contains(Method::sphere))
         parts_->spheres = rest_spheres(bvh, surface);
-    if (options.methods.contains(Method::moments))
-        parts_->moments = rest_moments(bvh, surface);
 }
 
 Bounder::~Bounder() = default;

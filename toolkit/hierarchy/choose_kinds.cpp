@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 
+#include "toolkit/bounds/rounding.hpp"
 #include "toolkit/deform/parallel.hpp"
 #include "toolkit/deform/per_thread.hpp"
 #include "toolkit/hierarchy/packed_bvh.hpp"
@@ -93,11 +94,16 @@ void spread(std::span<const std::uint32_t> place, const Bvh& bvh, std::size_t ea
 }
 
 // The start of λ that suits each BV best, for one kind, and what comes of it.
-Trial calibrate(const Bvh& bvh, const DeformableSurface& surface, Method kind,
+// BVs of the kind moments that have no rest data for it get nothing.
+Trial calibrate(const Bvh& bvh, const DeformableSurface& surface, Method kind, MomentData& moments,
                 std::span<const ProjectedMaps<double>> frames, std::vector<double>& start)
 {
-    PackedBvh<double> packed = pack<double>(
-        bvh, surface, std::vector<ChosenKind>(bvh.bvs.size(), {kind, {}, 0, 0, false}), bvh.detail == RestDetail::all);
+    ChosenKinds kinds{std::vector<ChosenKind>(bvh.bvs.size(), {kind, {}, 0, 0, false}), std::move(moments)};
+    for (std::size_t i = 0; i < bvh.bvs.size() && kind == Method::moments; ++i)
+        if (!kinds.moments.has(i))
+            kinds.of[i].kind = Method::linear;
+    PackedBvh<double> packed = pack<double>(bvh, surface, kinds, bvh.detail == RestDetail::all);
+    moments = std::move(kinds.moments);
     const std::size_t bvs = packed.bvs.size();
     start.assign(bvs, 0.0);
     Trial best = attempt(packed, frames);
@@ -116,6 +122,12 @@ Trial calibrate(const Bvh& bvh, const DeformableSurface& surface, Method kind,
                 std::copy_n(&trial.supports[(f * bvs + i) * kdop], kdop, &best.supports[(f * bvs + i) * kdop]);
         }
     }
+    for (std::size_t i = 0; i < bvs && kind == Method::moments; ++i)
+        if (packed.bvs[i].kind != kind) {
+            best.width[i] = infinite;
+            for (std::size_t f = 0; f < frames.size(); ++f)
+                std::fill_n(&best.supports[(f * bvs + i) * kdop], kdop, infinite);
+        }
     if (packed.place.empty())
         return best;
     spread<double>(packed.place, bvh, 1, start);
@@ -133,13 +145,14 @@ Trial calibrate(const Bvh& bvh, const DeformableSurface& surface, Method kind,
 
 } // namespace
 
-std::vector<ChosenKind> choose_kinds(const Bvh& bvh, const DeformableSurface& surface, Method method, RestShape shape,
-                                     KindPolicy policy)
+ChosenKinds choose_kinds(const Bvh& bvh, const DeformableSurface& surface, Method method, RestShape shape,
+                         KindPolicy policy)
 {
     const bool box_only = box_methods.contains(method);
-    std::vector<ChosenKind> chosen(bvh.bvs.size(), {method, {}, 0, 0, box_only && shape == RestShape::obb});
+    ChosenKinds out{std::vector<ChosenKind>(bvh.bvs.size(), {method, {}, 0, 0, box_only && shape == RestShape::obb})};
+    std::vector<ChosenKind>& chosen = out.of;
     if (bvh.bvs.empty() || box_only || method == Method::linear)
-        return chosen;
+        return out;
     std::mt19937_64 random(20080101);
     const RestBox& root = bvh.bvs[0].box;
     const std::vector<Vec3> place = node_places(surface);
@@ -148,18 +161,24 @@ std::vector<ChosenKind> choose_kinds(const Bvh& bvh, const DeformableSurface& su
         project<double>(synthetic_frame(place, root, strength, random), rest_extent(bvh, surface), kdop,
                         Rounding::proven, frames.emplace_back());
 
+    const bool leaves = bvh.detail == RestDetail::all;
+    if (method == Method::moments || method == Method::best)
+        out.moments = rest_moments(bvh, surface, [&](const Bv& bv) {
+            return (leaves || !bv.is_leaf()) &&
+                   (method == Method::moments || bv.influence_count <= policy.most_moments);
+        });
     if (method != Method::best) {
         std::vector<double> start;
-        calibrate(bvh, surface, method, frames, start);
+        calibrate(bvh, surface, method, out.moments, frames, start);
         for (std::size_t i = 0; i < chosen.size(); ++i)
             chosen[i].start = start[i];
-        return chosen;
+        return out;
     }
     const std::vector<Method> kinds = tightest_first(chosen_methods);
     std::vector<Trial> trial(kinds.size());
     std::vector<std::vector<double>> start(kinds.size());
     for (std::size_t k = 0; k < kinds.size(); ++k)
-        trial[k] = calibrate(bvh, surface, kinds[k], frames, start[k]);
+        trial[k] = calibrate(bvh, surface, kinds[k], out.moments, frames, start[k]);
     for (std::size_t i = 0; i < chosen.size(); ++i) {
         auto both = [&](std::size_t a, std::size_t b) { // width of the intersection
             double width = 0;
@@ -170,20 +189,24 @@ std::vector<ChosenKind> choose_kinds(const Bvh& bvh, const DeformableSurface& su
                 }
             return width;
         };
-        std::size_t best = 0;
-        for (std::size_t k = 1; k < kinds.size(); ++k)
-            if (trial[k].width[i] < trial[best].width[i])
-                best = k;
-        chosen[i] = {kinds[best], {}, start[best][i], 0, false, policy.guarded};
-        double width = policy.worth_twice * trial[best].width[i];
+        // Of each alone and of any two the least width by what their time must be worth: moments take as long as two.
+        double least = infinite; // where no kind has a number, any does
+        chosen[i] = {kinds.back(), {}, start.back()[i], 0, false, policy.guarded};
+        const auto propose = [&](double width, const ChosenKind& kind) {
+            if (width < least) {
+                least = width;
+                chosen[i] = kind;
+            }
+        };
+        const auto worth = [&](std::size_t k) { return kinds[k] == Method::moments ? policy.worth_twice : 1; };
+        for (std::size_t a = 0; a < kinds.size(); ++a)
+            propose(trial[a].width[i] / worth(a), {kinds[a], {}, start[a][i], 0, false, policy.guarded});
         for (std::size_t a = 0; a < kinds.size(); ++a)
             for (std::size_t b = a + 1; b < kinds.size(); ++b)
-                if (const double w = both(a, b); w < width) {
-                    width = w;
-                    chosen[i] = {kinds[a], kinds[b], start[a][i], start[b][i], false, policy.guarded};
-                }
+                propose(both(a, b) / (policy.worth_twice * worth(a) * worth(b)),
+                        {kinds[a], kinds[b], start[a][i], start[b][i], false, policy.guarded});
     }
-    return chosen;
+    return out;
 }
 
 } // namespace cinch

@@ -13,131 +13,133 @@
 namespace cinch {
 namespace {
 
-double squared(const Lifted& x)
-{
-    double sum = 0;
-    for (const double component : x)
-        sum += component * component;
-    return sum;
-}
-
-// The hull of scaled vectors, component by component beside each other: sums have the same order on every machine.
+// The hull of scaled vectors, by their products with each other; in arrays of as many as there may be.
 class LiftedHull {
 public:
-    explicit LiftedHull(std::size_t most)
+    using Values = Eigen::Array<double, most_lifted_points, 1>; // one for each point; no point has no score
+
+    LiftedHull()
     {
-        for (auto& component : component_)
-            component.reserve(most);
+        component_.setZero();
+        product_.setZero();
+        none_.setConstant(-unreachable);
     }
-    std::size_t size() const { return component_[0].size(); }
+    std::size_t size() const { return size_; }
     void add(const Lifted& x)
     {
-        for (std::size_t i = 0; i < lifted_size; ++i)
-            component_[i].push_back(x[i]);
+        const auto at = static_cast<Eigen::Index>(size_++);
+        for (std::size_t c = 0; c < lifted_size; ++c)
+            component_(at, static_cast<Eigen::Index>(c)) = x[c];
+        none_[at] = 0;
+        product_.col(at) = products(x);
+        product_.row(at) = product_.col(at).transpose();
     }
 
     /// About the distance of x, and coefficients of a point of the hull that is so near; goes on from those in `alpha`,
-    /// if any, for so many steps or until it is at most `enough`.
-    double approach(const Lifted& x, std::vector<double>& alpha, int steps, double enough)
+    /// if any is not 0, for so many steps or until it is at most `enough`. Steps from the point that is the least use
+    /// to the one that is the most [pairwise Frank-Wolfe, Lacoste-Julien and Jaggi 2015].
+    double approach(const Lifted& x, Values& alpha, int steps, double enough) const
     {
-        const std::size_t known = alpha.size();
-        alpha.resize(size(), 0.0);
-        score_.resize(size());
-        if (known == 0)
-            alpha[nearest(x)] = 1;
-        Lifted rest = x;
-        for (std::size_t i = 0; i < size(); ++i)
+        Values score = products(x) + none_; // of what is left of x with each point
+        if (!(alpha > 0).any()) {
+            Eigen::Index nearest;
+            (product_.matrix().diagonal().array() - 2 * score).minCoeff(&nearest);
+            alpha[nearest] = 1;
+        }
+        Values unused;
+        for (Eigen::Index i = 0; i < alpha.size(); ++i) {
+            unused[i] = alpha[i] > 0 ? 0 : 2 * unreachable;
             if (alpha[i] > 0)
-                for (std::size_t c = 0; c < lifted_size; ++c)
-                    rest[c] -= alpha[i] * component_[c][i];
-        double left = squared(rest);
+                score -= alpha[i] * product_.col(i);
+        }
+        double left = of_rest(x, alpha);
         for (int step = 0; step < steps && left > enough * enough; ++step) {
-            std::fill(score_.begin(), score_.end(), 0.0);
-            for (std::size_t c = 0; c < lifted_size; ++c)
-                for (std::size_t i = 0; i < score_.size(); ++i)
-                    score_[i] += rest[c] * component_[c][i];
-            std::size_t to = 0, from = 0;
-            double lowest = std::numeric_limits<double>::infinity();
-            for (std::size_t i = 0; i < score_.size(); ++i) {
-                if (score_[i] > score_[to])
-                    to = i;
-                if (alpha[i] > 0 && score_[i] < lowest) {
-                    lowest = score_[i];
-                    from = i;
-                }
-            }
-            if (!(score_[to] - lowest > 0.01 * left)) // within 1 % of the distance
+            const Values held = score + unused;
+            const double most = score.maxCoeff(), least = held.minCoeff(); // in vectors, as their places are not found
+            const Eigen::Index to = place_of(score, most), from = place_of(held, least);
+            if (to == score.size() || from == score.size()) // one is no number
                 break;
-            double along = 0;
-            for (std::size_t c = 0; c < lifted_size; ++c) {
-                const double move = component_[c][to] - component_[c][from];
-                along += move * move;
-            }
-            const double move = std::min(alpha[from], (score_[to] - lowest) / along);
-            if (!(move > 0))
+            const double gain = most - least;
+            if (!(gain > 0.01 * left)) // within 1 % of the distance
                 break;
+            const double along = product_(to, to) - 2 * product_(to, from) + product_(from, from),
+                         move = std::min(alpha[from], gain / along);
+            if (!(move > 0 && along > 0))
+                break;
+            if (move == alpha[from])
+                unused[from] = 2 * unreachable;
             alpha[from] = move == alpha[from] ? 0 : alpha[from] - move;
             alpha[to] += move;
-            for (std::size_t c = 0; c < lifted_size; ++c)
-                rest[c] -= move * (component_[c][to] - component_[c][from]);
-            left = squared(rest);
+            unused[to] = 0;
+            score -= move * (product_.col(to) - product_.col(from));
+            left = std::max(0.0, left + move * (move * along - 2 * gain));
         }
         return std::sqrt(left);
     }
 
 private:
-    std::size_t nearest(const Lifted& x)
+    static constexpr double unreachable = 0x1p1000;
+    static Eigen::Index place_of(const Values& all, double value)
     {
-        std::fill(score_.begin(), score_.end(), 0.0);
+        Eigen::Index i = 0;
+        while (i < all.size() && all[i] != value)
+            ++i;
+        return i;
+    }
+    Values products(const Lifted& x) const
+    {
+        Values out = Values::Zero();
         for (std::size_t c = 0; c < lifted_size; ++c)
-            for (std::size_t i = 0; i < score_.size(); ++i)
-                score_[i] += (x[c] - component_[c][i]) * (x[c] - component_[c][i]);
-        return static_cast<std::size_t>(std::min_element(score_.begin(), score_.end()) - score_.begin());
+            out += x[c] * component_.col(static_cast<Eigen::Index>(c));
+        return out;
+    }
+    // Squared, without cancellation.
+    double of_rest(const Lifted& x, const Values& alpha) const
+    {
+        Eigen::Map<const Eigen::Array<double, 1, lifted_size>> all(x.data());
+        Eigen::Array<double, 1, lifted_size> rest = all;
+        for (Eigen::Index i = 0; i < alpha.size(); ++i)
+            if (alpha[i] > 0)
+                rest -= alpha[i] * component_.row(i);
+        return rest.square().sum();
     }
 
-    std::array<std::vector<double>, lifted_size> component_;
-    std::vector<double> score_;
+    std::size_t size_ = 0;
+    Eigen::Array<double, most_lifted_points, lifted_size> component_;
+    Eigen::Array<double, most_lifted_points, most_lifted_points> product_;
+    Values none_; // 0 for each point there is
 };
 
 } // namespace
 
-// Of n influences: d is off by u|d|, ξ by γ_n Σ w|z|, M by
-// γ_{n+1} Σ w|z_a z_b|, so leaves of the products and sums of these pass at most n + 4 roundings, and the sums of
-// absolute leaves at most n + 5: (n + 8)u of them leaves room for both, for n < 2²⁰. A product loses at most η/2: n for
-// each ξ, which then meets |d|, and 2n for each M.
+// Of n influences: d is off by u|d|, ξ by γ_n Σ w|z|, M by γ_{n+1} Σ w|z_a z_b|, so leaves of the products and sums of
+// these pass at most n + 4 roundings, and the sums of absolute leaves at most n + 5: (n + 8)u of them leaves room for
+// both, for n < 2²⁰. A product loses at most η/2: n for each ξ, which then meets |d|, and 2n for each M.
 LiftedVertex lift(const Vec3& d, Weights::Row row, std::span<const Vec3> place)
 {
-    double xi[3] = {}, xi_leaves[3] = {}, m[6] = {}, m_leaves[6] = {}; // m: 00 11 22, 01 02 12
-    static constexpr int first[6] = {0, 1, 2, 0, 0, 1}, second[6] = {0, 1, 2, 1, 2, 2};
+    Vec3 xi = Vec3::Zero(), xi_leaves = xi;
+    Eigen::Matrix3d m = Eigen::Matrix3d::Zero(), m_leaves = m;
     for (std::size_t i = 0; i < row.node.size(); ++i) {
         const Vec3& z = place[i];
-        for (int s = 0; s < 3; ++s) {
-            xi[s] += row.weight[i] * z[s];
-            xi_leaves[s] += row.weight[i] * std::abs(z[s]);
-        }
-        for (int c = 0; c < 6; ++c) {
-            const double product = z[first[c]] * z[second[c]];
-            m[c] += row.weight[i] * product;
-            m_leaves[c] += row.weight[i] * std::abs(product);
-        }
+        xi += row.weight[i] * z;
+        xi_leaves += row.weight[i] * z.cwiseAbs();
+        m += row.weight[i] * (z * z.transpose());
+        m_leaves += row.weight[i] * (z * z.transpose()).cwiseAbs();
     }
     LiftedVertex out;
-    const double n = static_cast<double>(row.node.size());
+    const double n = static_cast<double>(row.node.size()), reach = d.lpNorm<1>();
     const auto set = [&](std::size_t place_of, double value, double leaves, double factor) {
         out.value[place_of] = value;
         out.off[place_of] =
             leaves == 0 ? 0 : succ((n + 8) * unit_roundoff * leaves + (4 * n + 8) * smallest_subnormal * (1 + factor));
     };
-    const double reach = d.lpNorm<1>();
-    for (std::size_t s = 0; s < 3; ++s) {
-        const auto a = static_cast<int>(s), i = (a + 1) % 3, j = (a + 2) % 3;
-        const int p = first[s + 3], q = second[s + 3];
-        set(s, d[a], std::abs(d[a]), 0);
-        set(3 + s, xi[a] - d[a], xi_leaves[a] + std::abs(d[a]), 0);
-        set(6 + s, d[a] * xi[a] - 0.5 * m[a], std::abs(d[a]) * xi_leaves[a] + 0.5 * m_leaves[a], reach);
-        set(9 + s, (d[p] * xi[q] + d[q] * xi[p]) - m[s + 3],
-            (std::abs(d[p]) * xi_leaves[q] + std::abs(d[q]) * xi_leaves[p]) + m_leaves[s + 3], reach);
-        set(12 + s, d[i] * xi[j] - d[j] * xi[i], std::abs(d[i]) * xi_leaves[j] + std::abs(d[j]) * xi_leaves[i], reach);
+    for (std::size_t b = 0; b < 3; ++b) {
+        const auto i = static_cast<int>(b);
+        set(b, d[i], std::abs(d[i]), 0);
+        set(3 + b, xi[i] - d[i], xi_leaves[i] + std::abs(d[i]), 0);
+        for (int s = 0; s < 3; ++s)
+            set(6 + 3 * static_cast<std::size_t>(s) + b, d[i] * xi[s] - 0.5 * m(i, s),
+                std::abs(d[i]) * xi_leaves[s] + 0.5 * m_leaves(i, s), reach);
     }
     return out;
 }
@@ -163,7 +165,8 @@ LiftedPoints choose_lifted(std::span<const Lifted> all, const Lifted& scale, std
     for (Lifted& own : x)
         for (std::size_t i = 0; i < lifted_size; ++i)
             own[i] *= scale[i];
-    LiftedHull hull(most);
+    LiftedHull hull;
+    std::vector<LiftedHull::Values> alpha(all.size(), LiftedHull::Values::Zero());
     std::vector<bool> is_chosen(all.size(), false);
     const auto take = [&](std::uint32_t k) {
         if (is_chosen[k])
@@ -191,7 +194,7 @@ LiftedPoints choose_lifted(std::span<const Lifted> all, const Lifted& scale, std
     std::priority_queue<Far> farthest;
     for (std::uint32_t k = 0; k < x.size(); ++k)
         if (!is_chosen[k])
-            farthest.push({hull.approach(x[k], out.combination[k], 20, 0), k, hull.size()});
+            farthest.push({hull.approach(x[k], alpha[k], 20, 0), k, hull.size()});
     while (hull.size() < most && !farthest.empty()) {
         Far top = farthest.top();
         farthest.pop();
@@ -201,19 +204,17 @@ LiftedPoints choose_lifted(std::span<const Lifted> all, const Lifted& scale, std
             take(top.place);
             continue;
         }
-        top.distance = std::min(top.distance, hull.approach(x[top.place], out.combination[top.place], 30, 0));
+        top.distance = std::min(top.distance, hull.approach(x[top.place], alpha[top.place], 30, 0));
         top.points = hull.size();
         farthest.push(top);
     }
     const double enough = farthest.empty() ? 0 : 0.5 * farthest.top().distance;
     for (std::uint32_t k = 0; k < x.size(); ++k) {
-        std::vector<double>& own = out.combination[k];
-        if (is_chosen[k]) {
-            own.clear();
+        if (is_chosen[k])
             continue;
-        }
-        hull.approach(x[k], own, 100, enough);
-        round_dyadic(own);
+        hull.approach(x[k], alpha[k], 50, enough);
+        out.combination[k].assign(alpha[k].data(), alpha[k].data() + hull.size());
+        round_dyadic(out.combination[k]);
     }
     return out;
 }

@@ -25,12 +25,13 @@ struct LiftedPoints {
 
 /// Most points of a BV, and in what units their distances are measured, for surfaces of this size: gradients of
 /// displacements are about 1, and change by about 1 over it.
-inline constexpr std::size_t most_lifted_points = 64;
+inline constexpr std::size_t most_lifted_points = 32;
 Lifted lifted_scale(double unit);
 
-/// At most `most` ≥ 6 of them, all where there are no more. Greedy: first the extremes of the first three components,
-/// then what is farthest from the hull of those before it, distances measured in components times `scale` by pairwise
-/// Frank-Wolfe. They need not be exact, as nothing relies on them: the combinations are what counts.
+/// At most `most` of them, from 6 to most_lifted_points; all where there are no more. Greedy: first the extremes of the
+/// first three components, then what is farthest from the hull of those before it, distances measured in components
+/// times `scale` by pairwise Frank-Wolfe. They need not be exact, as nothing relies on them: the combinations are what
+/// counts.
 LiftedPoints choose_lifted(std::span<const Lifted> all, const Lifted& scale, std::size_t most);
 
 } // namespace cinch

@@ -9,6 +9,7 @@
 #include "toolkit/bounds/rounding.hpp"
 #include "toolkit/deform/parallel.hpp"
 #include "toolkit/hierarchy/lifted_points.hpp"
+#include "toolkit/hierarchy/packed_bvh.hpp"
 #include "toolkit/hierarchy/spheres.hpp"
 
 namespace cinch {
@@ -16,6 +17,7 @@ namespace {
 
 // What one BV is made into.
 struct OwnMoments {
+    Vec3 centre = Vec3::Zero();
     std::vector<Lifted> point;
     Lifted least{}, greatest{};
 };
@@ -81,7 +83,29 @@ Eigen::Matrix3d inverted(const Eigen::Matrix3d& covariance)
     return inverse;
 }
 
-// Coefficients of the linear fit over the places, weighted by the mean weights.
+// The mean of the places by mean weights, on a grid about the rest origin: any centre is as good.
+Vec3 centre_on_grid(const Vec3& mean, const Vec3& pivot, const Vec3& origin, double unit)
+{
+    const double cell = std::exp2(std::ceil(std::log2(unit)) - 12);
+    if (!(cell > 0 && std::isfinite(cell)))
+        return pivot;
+    Vec3 centre;
+    for (int s = 0; s < 3; ++s) {
+        const double d = mean[s] - origin[s],
+                     cells = std::round((std::abs(d) < 64 * unit ? d : pivot[s] - origin[s]) / cell);
+        centre[s] = origin[s] + cells * cell;
+    }
+    return centre;
+}
+
+// To 24 bits; 0 for what is out of all proportion.
+double rounded_place(double z, double unit)
+{
+    const double split = 0x1p29 * z + z, rounded = split - (split - z); // [Veltkamp 1968]
+    return std::abs(z) < 0x1p20 * unit && std::abs(z) > 0x1p-40 * unit && std::isfinite(rounded) ? rounded : 0;
+}
+
+// Coefficients of the linear fit over the places, weighted by the mean weights: their mean is near 0.
 void fit_places(std::span<MomentInfluence> influence, std::span<const WeightModel> model, double unit)
 {
     Vec3 mean = Vec3::Zero();
@@ -95,23 +119,28 @@ void fit_places(std::span<MomentInfluence> influence, std::span<const WeightMode
     const Eigen::Matrix3d inverse = inverted(covariance);
     for (std::size_t j = 0; j < influence.size(); ++j) {
         const Vec3 gradient = model[j].mean * (inverse * ((influence[j].place - mean) / unit)) / unit;
-        const double intercept = model[j].mean - gradient.dot(mean);
-        if (std::isfinite(gradient.sum()) && std::isfinite(intercept))
+        if (std::isfinite(gradient.sum()))
             influence[j].gradient = gradient;
-        influence[j].intercept = std::isfinite(intercept) ? intercept : model[j].mean;
+        influence[j].mean = model[j].mean;
     }
 }
 
 OwnMoments prepare(const DeformableSurface& surface, const Bvh& bvh, const Bv& bv, std::span<const Vec3> place,
-                   double unit, std::span<MomentInfluence> influence)
+                   const Vec3& origin, double unit, std::span<MomentInfluence> influence)
 {
+    OwnMoments own;
     const auto nodes = std::span(bvh.node).subspan(bv.first_influence, bv.influence_count);
     const auto models = std::span(bvh.model).subspan(bv.first_influence, bv.influence_count);
     std::vector<std::uint32_t> at(place.size()); // of each simulation node among the BV's
+    Vec3 mean = Vec3::Zero();
     for (std::size_t j = 0; j < nodes.size(); ++j) {
-        influence[j].place = place[nodes[j]] - bv.pivot; // what is rounded is another place, as good
+        mean += models[j].mean * place[nodes[j]];
         at[nodes[j]] = static_cast<std::uint32_t>(j);
     }
+    own.centre = centre_on_grid(mean, bv.pivot, origin, unit);
+    for (std::size_t j = 0; j < nodes.size(); ++j)
+        for (int s = 0; s < 3; ++s) // what is rounded is another place, as good
+            influence[j].place[s] = rounded_place(place[nodes[j]][s] - own.centre[s], unit);
     fit_places(influence, models, unit);
 
     const std::vector<std::uint32_t> vertices = vertices_of(surface, bvh, bv);
@@ -120,7 +149,7 @@ OwnMoments prepare(const DeformableSurface& surface, const Bvh& bvh, const Bv& b
     std::vector<Lifted> value;
     std::vector<Vec3> own_place;
     for (const std::uint32_t k : vertices) {
-        const Vec3 d = surface.mesh.vertices[k] - bv.pivot;
+        const Vec3 d = surface.mesh.vertices[k] - own.centre;
         const Weights::Row row = surface.weights.of(k);
         own_place.clear();
         for (const std::uint32_t node : row.node) {
@@ -134,7 +163,6 @@ OwnMoments prepare(const DeformableSurface& surface, const Bvh& bvh, const Bv& b
         influence[j].local = local[j].around();
 
     const LiftedPoints points = choose_lifted(value, lifted_scale(unit), most_lifted_points);
-    OwnMoments own;
     Lifted most{};
     for (const std::uint32_t k : points.chosen) {
         own.point.push_back(value[k]);
@@ -154,7 +182,7 @@ OwnMoments prepare(const DeformableSurface& surface, const Bvh& bvh, const Bv& b
 
 } // namespace
 
-MomentData rest_moments(const Bvh& bvh, const DeformableSurface& surface)
+MomentData rest_moments(const Bvh& bvh, const DeformableSurface& surface, const std::function<bool(const Bv&)>& wanted)
 {
     MomentData out;
     out.influence.assign(bvh.node.size(), {});
@@ -162,14 +190,17 @@ MomentData rest_moments(const Bvh& bvh, const DeformableSurface& surface)
         surface.place.size() == surface.weights.node_count ? surface.place : node_places(surface);
     std::vector<OwnMoments> own(bvh.bvs.size());
     const double half = bvh.bvs.empty() ? 0 : bvh.bvs[0].box.half.maxCoeff(), unit = half > 0 ? half : 1;
+    const Vec3 origin = rest_extent(bvh, surface).origin;
     parallel_blocks(bvh.bvs.size(), 4, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             const Bv& bv = bvh.bvs[i];
-            own[i] = prepare(surface, bvh, bv, place, unit,
-                             std::span(out.influence).subspan(bv.first_influence, bv.influence_count));
+            if (wanted(bv))
+                own[i] = prepare(surface, bvh, bv, place, origin, unit,
+                                 std::span(out.influence).subspan(bv.first_influence, bv.influence_count));
         }
     });
     for (OwnMoments& bv : own) {
+        out.centre.push_back(bv.centre);
         out.first_point.push_back(out.point.size());
         out.point.insert(out.point.end(), bv.point.begin(), bv.point.end());
         out.least.push_back(bv.least);

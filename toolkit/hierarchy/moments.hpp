@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "toolkit/bounds/bound_moments.hpp"
@@ -9,22 +10,28 @@ namespace cinch {
 
 /// Rest data of the moment bound for every BV.
 struct MomentData {
+    std::vector<Vec3> centre;               ///< of each BV
     std::vector<MomentInfluence> influence; ///< parallel to Bvh::node
     std::vector<Lifted> point;              ///< of all BVs
     std::vector<std::size_t> first_point;   ///< of each BV; and one at the end
     std::vector<Lifted> least, greatest;    ///< of each BV
 
+    bool has(std::size_t index) const { return !first_point.empty() && first_point[index + 1] > first_point[index]; }
     RestMoments of(const Bv& bv, std::size_t index) const
     {
-        return {bv.pivot, std::span(influence).subspan(bv.first_influence, bv.influence_count),
+        return {centre[index], std::span(influence).subspan(bv.first_influence, bv.influence_count),
                 std::span(point).subspan(first_point[index], first_point[index + 1] - first_point[index]), least[index],
                 greatest[index]};
     }
 };
 
-/// Of a tree with models of weights (RestDetail::inner). BVs of at most 64 vertices have all of them as points.
+/// Of the BVs that are wanted, of a tree with models of weights (RestDetail::inner). Those of at most
+/// most_lifted_points vertices have all of them as points.
 /// Simulation nodes without a place of their own (DeformableSurface::place) stand at the mean of the vertices that they
-/// influence, by weight. In parallel, deterministic.
-MomentData rest_moments(const Bvh& bvh, const DeformableSurface& surface);
+/// influence, by weight. Places are rounded to 24 bits about a centre that is near their mean, and has few bits more
+/// than the rest origin: both are exact in float. In parallel, deterministic.
+MomentData rest_moments(
+    const Bvh& bvh, const DeformableSurface& surface,
+    const std::function<bool(const Bv&)>& wanted = [](const Bv&) { return true; });
 
 } // namespace cinch

@@ -46,8 +46,9 @@ RestExtent rest_extent(const Bvh& bvh, const DeformableSurface& surface, RestSha
 }
 
 template <class T>
-PackedBvh<T> pack(const Bvh& bvh, const DeformableSurface& surface, std::span<const ChosenKind> kinds, bool leaves)
+PackedBvh<T> pack(const Bvh& bvh, const DeformableSurface& surface, const ChosenKinds& chosen, bool leaves)
 {
+    const std::vector<ChosenKind>& kinds = chosen.of;
     PackedBvh<T> out;
     out.rest = rest_extent(bvh, surface, !kinds.empty() && kinds[0].oriented ? RestShape::obb : RestShape::aabb);
     const std::vector<Vec3>& x = surface.mesh.vertices;
@@ -56,7 +57,9 @@ PackedBvh<T> pack(const Bvh& bvh, const DeformableSurface& surface, std::span<co
     auto wanted = [&](std::size_t i) { return leaves || !bvh.bvs[i].is_leaf(); };
     const auto put = [&](std::size_t i, Method kind, double start, bool oriented, bool guarded) {
         const auto place = static_cast<std::uint32_t>(out.bvs.size());
-        pack_bv<T>(bvh.rest(i), x, out.rest, {kind, start, oriented ? &bvh.bvs[i].oriented : nullptr, guarded}, out);
+        const RestMoments moments = kind == Method::moments ? chosen.moments.of(bvh.bvs[i], i) : RestMoments{};
+        pack_bv<T>(bvh.rest(i), x, out.rest,
+                   {kind, start, oriented ? &bvh.bvs[i].oriented : nullptr, guarded, &moments}, out);
         return place;
     };
     for (std::size_t i = 0; i < bvh.bvs.size(); ++i)
@@ -85,7 +88,7 @@ PackedBvh<T> pack(const Bvh& bvh, const DeformableSurface& surface, std::span<co
     return out;
 }
 
-template PackedBvh<float> pack(const Bvh&, const DeformableSurface&, std::span<const ChosenKind>, bool);
-template PackedBvh<double> pack(const Bvh&, const DeformableSurface&, std::span<const ChosenKind>, bool);
+template PackedBvh<float> pack(const Bvh&, const DeformableSurface&, const ChosenKinds&, bool);
+template PackedBvh<double> pack(const Bvh&, const DeformableSurface&, const ChosenKinds&, bool);
 
 } // namespace cinch

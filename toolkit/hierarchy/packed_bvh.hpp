@@ -7,6 +7,7 @@
 #include "cinch/bvh.hpp"
 #include "toolkit/bounds/kernel/bound_kernel.hpp"
 #include "toolkit/bounds/pack_bv.hpp"
+#include "toolkit/hierarchy/moments.hpp"
 
 namespace cinch {
 
@@ -32,28 +33,35 @@ struct ChosenKind {
     bool guarded = false;  ///< never clearly looser than Eq. 12: local by itself, others with one in reserve
 };
 
+/// Of all BVs of a tree, and what those of the kind moments need.
+struct ChosenKinds {
+    std::vector<ChosenKind> of;
+    MomentData moments{};
+};
+
 /// What `best` is chosen for. Two kinds take twice the time, and are worth it where their intersection has at most a
-/// share of the width of the better one. Refits are never clearly looser than Eq. 12; queries, which can look closer
-/// where it matters, have no guard.
+/// share of the width of the better one; moments take as long as two others. Refits are never clearly looser than Eq.
+/// 12; queries, which can look closer where it matters, have no guard.
 struct KindPolicy {
     double worth_twice;
     bool guarded;
+    std::size_t most_moments; ///< most simulation nodes of a BV for which moments are tried
 };
-inline constexpr KindPolicy for_refits{0.96, true}, for_queries{0.85, false};
+inline constexpr KindPolicy for_refits{0.96, true, 160}, for_queries{0.85, false, 0};
 
 /// Coordinates of the packed rest data: any origin will do, but the same for all that share a frame's projected maps.
 RestExtent rest_extent(const Bvh& bvh, const DeformableSurface& surface, RestShape shape = RestShape::aabb);
 
 /// For convex, eq12, limited and linear that kind; for local and support that kind with λ begun where it did best on
-/// synthetic deformations; for `best` whichever of linear, support and local did best there, or two of them where that
-/// is worth the time. The deformations are random quadratic ones, each node moving as at the mean of the vertices it
-/// influences. Deterministic.
-std::vector<ChosenKind> choose_kinds(const Bvh& bvh, const DeformableSurface& surface, Method method,
-                                     RestShape shape = RestShape::aabb, KindPolicy policy = for_refits);
+/// synthetic deformations; for `best` whichever of linear, support, local and moments did best there, or two of them,
+/// by what is worth the time. Of bodies that are queried, moments would change few BVs, by little. The deformations are
+/// random quadratic ones, each node moving as at the mean of the vertices it influences. Deterministic.
+ChosenKinds choose_kinds(const Bvh& bvh, const DeformableSurface& surface, Method method,
+                         RestShape shape = RestShape::aabb, KindPolicy policy = for_refits);
 
 /// Rounds everything outward to T. Leaves are left out if they are not wanted. Throws std::length_error for a BV
 /// of more simulation nodes than most_nodes_in_float or most_nodes_in_double.
-template <class T> PackedBvh<T> pack(const Bvh& bvh, const DeformableSurface& surface,
-                                     std::span<const ChosenKind> kinds, bool leaves = true);
+template <class T>
+PackedBvh<T> pack(const Bvh& bvh, const DeformableSurface& surface, const ChosenKinds& kinds, bool leaves = true);
 
 } // namespace cinch

@@ -77,7 +77,7 @@ template <class T> void prefetch(const KernelInput<T>& in, const PackedBv<T>& bv
     if (!takes_one_by_one(bv.kind))
         return; // a long run, which the hardware follows
     const T* const value = in.value.data() + bv.first_value;
-    const std::size_t count = 12 * quads_of(bv.points) + bv.count * PackedBv<T>::values(bv.kind);
+    const std::size_t count = bv.values_before() + bv.count * PackedBv<T>::values(bv.kind);
     hwy::Prefetch(in.node.data() + bv.first_node);
     for (std::size_t i = 0; i < count; i += 64 / sizeof(T))
         hwy::Prefetch(value + i);

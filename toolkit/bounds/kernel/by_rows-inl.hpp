@@ -9,6 +9,7 @@
 
 #include "toolkit/bounds/kernel/guard-inl.hpp"
 #include "toolkit/bounds/kernel/linear-inl.hpp"
+#include "toolkit/bounds/kernel/moments-inl.hpp"
 #include "toolkit/bounds/kernel/search-inl.hpp"
 #include "toolkit/bounds/kernel/support-inl.hpp"
 
@@ -22,7 +23,7 @@ template <class T, std::size_t kAxes> void bound_by_rows(const KernelInput<T>& i
     constexpr std::size_t chunks = row_chunks<kAxes>;
     const std::uint32_t* node = in.node.data() + bv.first_node;
     const T* point = in.value.data() + bv.first_value;
-    const T* value = point + 12 * quads_of(bv.points);
+    const T* value = point + bv.values_before();
     AxisMap<T, kAxes> reference;
     Sides<T, kAxes> bound;
     if (bv.kind == Method::linear) {
@@ -31,12 +32,25 @@ template <class T, std::size_t kAxes> void bound_by_rows(const KernelInput<T>& i
         if (scratch.b.size() < 16 * chunks * bv.count)
             scratch.b.resize(16 * chunks * bv.count);
         T* b = scratch.b.data();
-        mean_map<T, kAxes>(bv, *in.maps, node, value, PackedBv<T>::values(Method::support), support_mean, reference,
+        const bool moments = bv.kind == Method::moments;
+        const std::size_t stride = PackedBv<T>::values(bv.kind);
+        mean_map<T, kAxes>(bv, *in.maps, node, value, stride, moments ? moment_mean : support_mean, reference,
                            out.error);
         RowExtrema<T, kAxes> e;
-        support_extrema<T, kAxes>(bv, *in.maps, node, value, reference, b, e);
+        MomentNumbers<T> numbers[chunks];
+        const T* head = value - moment_head;
+        if (moments)
+            for (std::size_t c = 0; c < chunks; ++c) {
+                numbers[c] = moment_numbers<T, kAxes>(bv, *in.maps, node, head, value, reference.chunk[c], c);
+                moment_extrema<T, kAxes>(bv, *in.maps, node, value, reference.chunk[c], numbers[c], c,
+                                         b + 16 * c * bv.count, e);
+            }
+        else
+            support_extrema<T, kAxes>(bv, *in.maps, node, value, reference, b, e);
+        const RowInterval<T> interval{value + (moments ? moment_l : support_l),
+                                      value + (moments ? moment_r : support_r), stride};
         if (in.passes == 1 && !remembered) {
-            support_in_one_pass<T, kAxes>(bv, value, b, e, in.rounding, bound);
+            support_in_one_pass<T, kAxes>(bv, interval, b, e, in.rounding, bound);
         } else {
             Extrema<T, kAxes> own;
             to_array<T, kAxes>(e.greatest, own.greatest);
@@ -47,7 +61,7 @@ template <class T, std::size_t kAxes> void bound_by_rows(const KernelInput<T>& i
                                  SidesInRows<T, kAxes> lambda;
                                  from_array<T, kAxes>(at, lambda);
                                  RowDual<T, kAxes> parts;
-                                 support_dual<T, kAxes, kMass>(bv, value, b, lambda, parts);
+                                 support_dual<T, kAxes, kMass>(bv, interval, b, lambda, parts);
                                  to_array<T, kAxes>(parts.lower, d.lower);
                                  to_array<T, kAxes>(parts.upper, d.upper);
                                  if constexpr (kMass)
@@ -58,8 +72,14 @@ template <class T, std::size_t kAxes> void bound_by_rows(const KernelInput<T>& i
                     bound.chunk[s][c] = each_row<T>(out.value[s] + 4 * c);
         }
         for (std::size_t c = 0; c < chunks; ++c)
-            add_rest_support(bv, point, reference.chunk[c], reference.chunk[c], in.rounding, bound.chunk[0][c],
-                             bound.chunk[1][c]);
+            if (!moments)
+                add_rest_support(bv, point, reference.chunk[c], reference.chunk[c], in.rounding, bound.chunk[0][c],
+                                 bound.chunk[1][c]);
+            else if (numbers[c].bounded)
+                add_lifted_support(bv, point, head, reference.chunk[c], numbers[c], in.rounding, bound.chunk[0][c],
+                                   bound.chunk[1][c]);
+            else
+                bound.chunk[0][c] = bound.chunk[1][c] = Rows<T>::all(infinity_of<T>);
     }
     store<T, kAxes>(bound, out.value);
     if (bv.guard) {

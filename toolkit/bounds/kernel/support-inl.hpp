@@ -51,17 +51,23 @@ HWY_INLINE void support_extrema(const PackedBv<T>& bv, const ProjectedMaps<T>& m
     }
 }
 
+/// Where l and r of the simulation nodes stand.
+template <class T> struct RowInterval {
+    const T *l, *r;
+    std::size_t stride;
+};
+
 /// D(λ) in parts; with kMass, Σ r over b > λ too. Nodes alternately in two sums.
 template <class T, std::size_t kAxes, bool kMass>
-HWY_INLINE void support_dual(const PackedBv<T>& bv, const T* value, const T* b, const SidesInRows<T, kAxes>& lambda,
-                             RowDual<T, kAxes>& out)
+HWY_INLINE void support_dual(const PackedBv<T>& bv, const RowInterval<T>& interval, const T* b,
+                             const SidesInRows<T, kAxes>& lambda, RowDual<T, kAxes>& out)
 {
-    constexpr std::size_t stride = PackedBv<T>::values(Method::support);
     const auto zero = Rows<T>::all(0);
     for (std::size_t c = 0; c < row_chunks<kAxes>; ++c, b += 16 * std::size_t{bv.count}) {
         Rows<T> lower[2] = {zero, zero}, upper[2] = {zero, zero}, mass[2] = {zero, zero};
         auto add = [&](std::size_t j, std::size_t to) HWY_ATTR {
-            const auto l = Rows<T>::all(value[j * stride + support_l]), r = Rows<T>::all(value[j * stride + support_r]);
+            const auto l = Rows<T>::all(interval.l[j * interval.stride]),
+                       r = Rows<T>::all(interval.r[j * interval.stride]);
             const auto above = Rows<T>::load(b + 16 * j) - lambda[c];
             lower[to] = fma(l, above, lower[to]);
             upper[to] = fma(r, greater(above, zero), upper[to]);
@@ -108,9 +114,9 @@ HWY_INLINE void from_array(const PerSide<T, kAxes>& in, SidesInRows<T, kAxes>& r
 
 /// The lesser of the greatest b and D(λ), λ at mean b + start·(greatest b − mean b): one pass, all in rows. See
 /// proven_dual_value.
-template <class T, std::size_t kAxes> HWY_INLINE void support_in_one_pass(const PackedBv<T>& bv, const T* value,
-                                                                          const T* b, const RowExtrema<T, kAxes>& e,
-                                                                          Rounding rounding, Sides<T, kAxes>& bound)
+template <class T, std::size_t kAxes>
+HWY_INLINE void support_in_one_pass(const PackedBv<T>& bv, const RowInterval<T>& interval, const T* b,
+                                    const RowExtrema<T, kAxes>& e, Rounding rounding, Sides<T, kAxes>& bound)
 {
     const auto factor = Rows<T>::all(dual_sum_factor<T>(row_depth(bv.count))),
                underflow = Rows<T>::all(dual_sum_underflow<T>(bv.count));
@@ -118,7 +124,7 @@ template <class T, std::size_t kAxes> HWY_INLINE void support_in_one_pass(const 
     for (std::size_t c = 0; c < row_chunks<kAxes>; ++c)
         lambda[c] = e.mean[c] + Rows<T>::all(bv.start) * (e.greatest[c] - e.mean[c]);
     RowDual<T, kAxes> d;
-    support_dual<T, kAxes, false>(bv, value, b, lambda, d);
+    support_dual<T, kAxes, false>(bv, interval, b, lambda, d);
     for (std::size_t c = 0; c < row_chunks<kAxes>; ++c) {
         const auto at = lambda[c], most = e.greatest[c], both = d.lower[c] + d.upper[c];
         auto dual = at + both;

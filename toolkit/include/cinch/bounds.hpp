@@ -33,7 +33,7 @@ enum class Method : std::uint8_t {
     support,  ///< rest support of a reference map, and `local` for the rest of every map
     linear,   ///< affine model of the weights with residuals, over the same rest support; no λ
     moments,  ///< first and second moments of the weights, what they leave of every map by D; third order
-    best,     ///< per BV the one of local, support and linear that scored best at build
+    best,     ///< per BV the one of local, support, linear and moments that scored best at build
     vertices, ///< the vertices themselves, O(ℓ): the truth
 };
 
@@ -61,7 +61,7 @@ inline constexpr std::array method_table = {
     MethodInfo{Method::local, "local", true, true, true, RestNeed::local},
     MethodInfo{Method::support, "support", true, false, true, RestNeed::points},
     MethodInfo{Method::linear, "linear", true, false, true, RestNeed::points},
-    MethodInfo{Method::moments, "moments", false, false, false, RestNeed::local},
+    MethodInfo{Method::moments, "moments", true, false, true, RestNeed::points},
     MethodInfo{Method::best, "best", true, false, false, RestNeed::points},
     MethodInfo{Method::vertices, "vertices", false, false, false, RestNeed::boxes},
 };
