@@ -4,8 +4,8 @@
 
 #include "exact/optimum.hpp"
 #include "tests/exact/lifted_exactly.hpp"
-#include "toolkit/hierarchy/lifted_points.hpp"
 #include "toolkit/bounds/rounding.hpp"
+#include "toolkit/hierarchy/lifted_points.hpp"
 
 using namespace cinch;
 using namespace cinch::exact;
@@ -36,9 +36,6 @@ ExactRemainder remainder(const MomentFit& fit, const Vec3& z, const Vec3& centre
     }
     return out;
 }
-
-// A coordinate of so few bits that no place is rounded.
-double on_grid(Random& random) { return std::round(uniform(random, 1024)) / 1024; }
 
 // Maps that are value and gradient of a quadratic motion at the places of the simulation nodes, as they are rounded.
 std::vector<AffineMap> quadratic_maps(std::span<const Vec3> place, Random& random)
@@ -214,13 +211,14 @@ TEST_CASE("a moment bound is at least the sum of its parts and of all their erro
     }
 }
 
-TEST_CASE("a quadratic motion is bounded by the moments to within rounding, whatever the weights")
+TEST_CASE("a quadratic motion is bounded by the moments to within the rounding of places, whatever the weights")
 {
     Random random(4);
     MomentScene scene(200, 30, 8);
     scene.e.surface.place.clear();
     for (std::size_t j = 0; j < scene.e.surface.weights.node_count; ++j)
-        scene.e.surface.place.emplace_back(on_grid(random), on_grid(random), on_grid(random));
+        scene.e.surface.place.emplace_back(uniform(random, 1), uniform(random, 1), uniform(random, 1));
+    scene.data = rest_moments(scene.bvh, scene.e.surface);
     std::size_t tight = 0;
     for (int trial = 0; trial < 2; ++trial) {
         const std::vector<AffineMap> maps = quadratic_maps(scene.e.surface.place, random);
@@ -239,7 +237,7 @@ TEST_CASE("a quadratic motion is bounded by the moments to within rounding, what
                 REQUIRE(truth <= Exact(bounds[place]));
                 if (vertices.size() > most_lifted_points)
                     continue;
-                REQUIRE(bounds[place] - CGAL::to_double(truth) < 1e-12);
+                REQUIRE(bounds[place] - CGAL::to_double(truth) < 1e-6);
                 ++tight;
             }
         }

@@ -83,26 +83,22 @@ Eigen::Matrix3d inverted(const Eigen::Matrix3d& covariance)
     return inverse;
 }
 
-// The mean of the places by mean weights, on a grid about the rest origin: any centre is as good.
-Vec3 centre_on_grid(const Vec3& mean, const Vec3& pivot, const Vec3& origin, double unit)
-{
-    const double cell = std::exp2(std::ceil(std::log2(unit)) - 12);
-    if (!(cell > 0 && std::isfinite(cell)))
-        return pivot;
-    Vec3 centre;
-    for (int s = 0; s < 3; ++s) {
-        const double d = mean[s] - origin[s],
-                     cells = std::round((std::abs(d) < 64 * unit ? d : pivot[s] - origin[s]) / cell);
-        centre[s] = origin[s] + cells * cell;
-    }
-    return centre;
-}
-
 // To 24 bits; 0 for what is out of all proportion.
-double rounded_place(double z, double unit)
+double to_24_bits(double z, double unit)
 {
     const double split = 0x1p29 * z + z, rounded = split - (split - z); // [Veltkamp 1968]
     return std::abs(z) < 0x1p20 * unit && std::abs(z) > 0x1p-40 * unit && std::isfinite(rounded) ? rounded : 0;
+}
+
+// The mean of the places by mean weights, of 24 bits about the rest origin: any centre is as good.
+Vec3 centre_near(const Vec3& mean, const Vec3& pivot, const Vec3& origin, double unit)
+{
+    Vec3 centre;
+    for (int s = 0; s < 3; ++s) {
+        const double d = mean[s] - origin[s];
+        centre[s] = origin[s] + to_24_bits(std::abs(d) < 64 * unit ? d : pivot[s] - origin[s], unit);
+    }
+    return centre;
 }
 
 // Coefficients of the linear fit over the places, weighted by the mean weights: their mean is near 0.
@@ -137,10 +133,10 @@ OwnMoments prepare(const DeformableSurface& surface, const Bvh& bvh, const Bv& b
         mean += models[j].mean * place[nodes[j]];
         at[nodes[j]] = static_cast<std::uint32_t>(j);
     }
-    own.centre = centre_on_grid(mean, bv.pivot, origin, unit);
+    own.centre = centre_near(mean, bv.pivot, origin, unit);
     for (std::size_t j = 0; j < nodes.size(); ++j)
         for (int s = 0; s < 3; ++s) // what is rounded is another place, as good
-            influence[j].place[s] = rounded_place(place[nodes[j]][s] - own.centre[s], unit);
+            influence[j].place[s] = to_24_bits(place[nodes[j]][s] - own.centre[s], unit);
     fit_places(influence, models, unit);
 
     const std::vector<std::uint32_t> vertices = vertices_of(surface, bvh, bv);

@@ -28,8 +28,8 @@ struct MomentData {
 /// Of the BVs that are wanted, of a tree with models of weights (RestDetail::inner). Those of at most
 /// most_lifted_points vertices have all of them as points.
 /// Simulation nodes without a place of their own (DeformableSurface::place) stand at the mean of the vertices that they
-/// influence, by weight. Places are rounded to 24 bits about a centre that is near their mean, and has few bits more
-/// than the rest origin: both are exact in float. In parallel, deterministic.
+/// influence, by weight. Places are rounded to 24 bits about a centre near their mean, which has 24 bits about the rest
+/// origin: both are exact in float. In parallel, deterministic.
 MomentData rest_moments(
     const Bvh& bvh, const DeformableSurface& surface,
     const std::function<bool(const Bv&)>& wanted = [](const Bv&) { return true; });
