@@ -151,7 +151,7 @@ std::string surface_fault(const FuzzCase& problem, Defect defect)
             if (both[d] != std::min(support[d], linear[d]))
                 return "support+linear, direction " + std::to_string(d) + ": not the lesser of the two";
     }
-    for (const Method method : {Method::corners, Method::sphere, Method::vertices, Method::moments})
+    for (const Method method : {Method::corners, Method::sphere, Method::vertices})
         if (wanted())
             if (std::string fault = fault_of(method, Precision::float64, bounds_of(method, Precision::float64, 1));
                 !fault.empty())

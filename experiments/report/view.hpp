@@ -19,7 +19,7 @@ struct ViewRequest {
     std::size_t frames = 60; ///< at most, evenly spread over the clip
     std::size_t levels = 8;  ///< of the BVH that are kept, the root's first
     int kdop = 6;            ///< greatest k on offer: 6 has 6; 14 has 6, 14; 18 has 6, 18; 26 all four
-    std::vector<Method> methods = tightest_first(all_methods.without(Method::vertices | Method::moments));
+    std::vector<Method> methods = tightest_first(all_methods.without(Method::vertices));
     int bits = 16;         ///< of the grid that positions are rounded to; 8 to 16
     std::size_t nodes = 0; ///< simulation nodes, where they are sampled; 0: as usual
     std::uint64_t seed = 0;

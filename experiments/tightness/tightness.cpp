@@ -21,8 +21,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const std::vector<Methods> usual = [] { // moments have no kernel: they take minutes
-    const Methods all = all_methods.without(Method::convex | Method::corners | Method::vertices | Method::moments);
+const std::vector<Methods> usual = [] {
+    const Methods all = all_methods.without(Method::convex | Method::corners | Method::vertices);
     return std::vector<Methods>(all.begin(), all.end());
 }();
 

@@ -20,7 +20,7 @@ TEST_CASE("every vertex of a BV lies in its nodes' local boxes about the centre,
         const RestMoments moments = scene.moments(bv);
         const auto vertices = scene.vertices(bv);
         REQUIRE(moments.influence.size() == rest.node.size());
-        REQUIRE(moments.point.size() == std::min<std::size_t>(vertices.size(), most_lifted_points));
+        REQUIRE(moments.point.size() == std::min<std::size_t>(vertices.size(), lifted_points_of(vertices.size())));
         for (std::size_t n = 0; n < vertices.size(); ++n) {
             const Weights::Row row = scene.e.surface.weights.of(vertices[n]);
             for (const std::uint32_t node : row.node) {
@@ -89,7 +89,7 @@ TEST_CASE("the slack is what convex combinations of the points leave of lifted v
             rounded.push_back(lift(scene.e.surface.mesh.vertices[k] - moments.centre, row, place).value);
         }
         const LiftedPoints points =
-            choose_lifted(rounded, lifted_scale(scene.bvh.bvs[0].box.half.maxCoeff()), most_lifted_points);
+            choose_lifted(rounded, lifted_scale(scene.bvh.bvs[0].box.half.maxCoeff()), lifted_points_of(rounded.size()));
         ExactLifted least, greatest;
         for (std::size_t n = 0; n < vertices.size(); ++n) {
             if (points.combination[n].empty())

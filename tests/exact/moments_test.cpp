@@ -235,7 +235,7 @@ TEST_CASE("a quadratic motion is bounded by the moments to within the rounding o
                 }
                 const std::size_t place = bv * 26 + d;
                 REQUIRE(truth <= Exact(bounds[place]));
-                if (vertices.size() > most_lifted_points)
+                if (vertices.size() > lifted_points_of(vertices.size()))
                     continue;
                 REQUIRE(bounds[place] - CGAL::to_double(truth) < 1e-6);
                 ++tight;

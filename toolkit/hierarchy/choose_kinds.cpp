@@ -189,7 +189,6 @@ ChosenKinds choose_kinds(const Bvh& bvh, const DeformableSurface& surface, Metho
                 }
             return width;
         };
-        // Of each alone and of any two the least width by what their time must be worth: moments take as long as two.
         double least = infinite; // where no kind has a number, any does
         chosen[i] = {kinds.back(), {}, start.back()[i], 0, false, policy.guarded};
         const auto propose = [&](double width, const ChosenKind& kind) {
@@ -198,12 +197,11 @@ ChosenKinds choose_kinds(const Bvh& bvh, const DeformableSurface& surface, Metho
                 chosen[i] = kind;
             }
         };
-        const auto worth = [&](std::size_t k) { return kinds[k] == Method::moments ? policy.worth_twice : 1; };
         for (std::size_t a = 0; a < kinds.size(); ++a)
-            propose(trial[a].width[i] / worth(a), {kinds[a], {}, start[a][i], 0, false, policy.guarded});
+            propose(trial[a].width[i], {kinds[a], {}, start[a][i], 0, false, policy.guarded});
         for (std::size_t a = 0; a < kinds.size(); ++a)
             for (std::size_t b = a + 1; b < kinds.size(); ++b)
-                propose(both(a, b) / (policy.worth_twice * worth(a) * worth(b)),
+                propose(both(a, b) / policy.worth_twice,
                         {kinds[a], kinds[b], start[a][i], start[b][i], false, policy.guarded});
     }
     return out;

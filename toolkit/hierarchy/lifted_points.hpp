@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -23,15 +24,20 @@ struct LiftedPoints {
     std::vector<std::vector<double>> combination; ///< parallel to `all`; empty for the chosen
 };
 
-/// Most points of a BV, and in what units their distances are measured, for surfaces of this size: gradients of
+/// Most points of any BV, how many one of so many vertices has (large ones also have many simulation nodes, which take
+/// longer), and in what units their distances are measured, for surfaces of this size: gradients of
 /// displacements are about 1, and change by about 1 over it.
-inline constexpr std::size_t most_lifted_points = 32;
+inline constexpr std::size_t most_lifted_points = 64;
+constexpr std::size_t lifted_points_of(std::size_t vertices)
+{
+    return std::clamp<std::size_t>(vertices / 8, 32, most_lifted_points);
+}
 Lifted lifted_scale(double unit);
 
 /// At most `most` of them, from 6 to most_lifted_points; all where there are no more. Greedy: first the extremes of the
-/// first three components, then what is farthest from the hull of those before it, distances measured in components
-/// times `scale` by pairwise Frank-Wolfe. They need not be exact, as nothing relies on them: the combinations are what
-/// counts.
+/// first three components, then what is farthest from the hull of those before it, among a sample at first; distances
+/// measured in components times `scale` by pairwise Frank-Wolfe. They need not be exact, as nothing relies on them: the
+/// combinations are what counts.
 LiftedPoints choose_lifted(std::span<const Lifted> all, const Lifted& scale, std::size_t most);
 
 } // namespace cinch

@@ -158,7 +158,7 @@ OwnMoments prepare(const DeformableSurface& surface, const Bvh& bvh, const Bv& b
     for (std::size_t j = 0; j < nodes.size(); ++j)
         influence[j].local = local[j].around();
 
-    const LiftedPoints points = choose_lifted(value, lifted_scale(unit), most_lifted_points);
+    const LiftedPoints points = choose_lifted(value, lifted_scale(unit), lifted_points_of(value.size()));
     Lifted most{};
     for (const std::uint32_t k : points.chosen) {
         own.point.push_back(value[k]);

@@ -25,8 +25,8 @@ struct MomentData {
     }
 };
 
-/// Of the BVs that are wanted, of a tree with models of weights (RestDetail::inner). Those of at most
-/// most_lifted_points vertices have all of them as points.
+/// Of the BVs that are wanted, of a tree with models of weights (RestDetail::inner). Those of few
+/// vertices have all of them as points (lifted_points_of).
 /// Simulation nodes without a place of their own (DeformableSurface::place) stand at the mean of the vertices that they
 /// influence, by weight. Places are rounded to 24 bits about a centre near their mean, which has 24 bits about the rest
 /// origin: both are exact in float. In parallel, deterministic.

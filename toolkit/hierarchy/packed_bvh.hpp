@@ -40,14 +40,14 @@ struct ChosenKinds {
 };
 
 /// What `best` is chosen for. Two kinds take twice the time, and are worth it where their intersection has at most a
-/// share of the width of the better one; moments take as long as two others. Refits are never clearly looser than Eq.
-/// 12; queries, which can look closer where it matters, have no guard.
+/// share of the width of the better one. Refits are never clearly looser than
+/// Eq. 12; queries, which can look closer where it matters, have no guard.
 struct KindPolicy {
     double worth_twice;
     bool guarded;
     std::size_t most_moments; ///< most simulation nodes of a BV for which moments are tried
 };
-inline constexpr KindPolicy for_refits{0.96, true, 160}, for_queries{0.85, false, 0};
+inline constexpr KindPolicy for_refits{0.99, true, 160}, for_queries{0.85, false, 0};
 
 /// Coordinates of the packed rest data: any origin will do, but the same for all that share a frame's projected maps.
 RestExtent rest_extent(const Bvh& bvh, const DeformableSurface& surface, RestShape shape = RestShape::aabb);
