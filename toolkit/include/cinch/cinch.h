@@ -252,7 +252,7 @@ typedef enum cinch_method {
     CINCH_METHOD_SUPPORT = 64,   ///< a reference map's support of the rest vertices, and `local` for the rest
     CINCH_METHOD_LINEAR = 128,   ///< an affine model of the weights with residuals
     CINCH_METHOD_MOMENTS = 256,  ///< first and second moments of the weights
-    CINCH_METHOD_BEST = 512,     ///< per BV whichever of local, support and linear scored best: the default
+    CINCH_METHOD_BEST = 512,     ///< per BV whichever of local, support, linear, moments is best
     CINCH_METHOD_VERTICES = 1024 ///< the vertices themselves
 } cinch_method;
 

@@ -18,9 +18,9 @@ struct RefitOptions {
     Rounding rounding = Rounding::proven; ///< `plain` proves nothing
     Precision precision =
         Precision::float32;                 ///< of the methods that have kernels: all but sphere, corners and vertices
-    int passes = 1;                         ///< evaluations of D for local, support and best
+    int passes = 1;                         ///< evaluations of D for local, support, moments and best
     RestShape rest_shape = RestShape::aabb; ///< for convex, eq12 and limited
-    bool remember = false;                  ///< λ of local, support and best begins where the last frame left it
+    bool remember = false; ///< λ of local, support, moments and best begins where the last frame left it
 };
 
 /// What of a frame could not be bounded.
