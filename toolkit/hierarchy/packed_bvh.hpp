@@ -39,23 +39,24 @@ struct ChosenKinds {
     MomentData moments{};
 };
 
-/// What `best` is chosen for. Two kinds take twice the time, and are worth it where their intersection has at most a
-/// share of the width of the better one. Refits are never clearly looser than
-/// Eq. 12; queries, which can look closer where it matters, have no guard.
+/// What `best` is chosen for. Twice the time must be worth it: the width has at most a share of what it had. Refits
+/// weigh the times of kinds, and are never clearly looser than Eq. 12; for queries, which can look closer where it
+/// matters, two kinds take twice the time of any one, there is no guard, and moments are not tried: they would change
+/// few BVs, by little.
 struct KindPolicy {
     double worth_twice;
-    bool guarded;
+    bool weighs_times, guarded;
     std::size_t most_moments; ///< most simulation nodes of a BV for which moments are tried
 };
-inline constexpr KindPolicy for_refits{0.99, true, 160}, for_queries{0.85, false, 0};
+inline constexpr KindPolicy for_refits{0.985, true, true, 160}, for_queries{0.85, false, false, 0};
 
 /// Coordinates of the packed rest data: any origin will do, but the same for all that share a frame's projected maps.
 RestExtent rest_extent(const Bvh& bvh, const DeformableSurface& surface, RestShape shape = RestShape::aabb);
 
 /// For convex, eq12, limited and linear that kind; for local and support that kind with λ begun where it did best on
 /// synthetic deformations; for `best` whichever of linear, support, local and moments did best there, or two of them,
-/// by what is worth the time. Of bodies that are queried, moments would change few BVs, by little. The deformations are
-/// random quadratic ones, each node moving as at the mean of the vertices it influences. Deterministic.
+/// by what is worth the time. The deformations are random quadratic ones, each simulation node moving as at the mean of
+/// the vertices it influences. Deterministic.
 ChosenKinds choose_kinds(const Bvh& bvh, const DeformableSurface& surface, Method method,
                          RestShape shape = RestShape::aabb, KindPolicy policy = for_refits);
 
