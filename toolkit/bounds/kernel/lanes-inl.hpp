@@ -27,9 +27,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace cinch::HWY_NAMESPACE {
 
-/// 8 virtual lanes of T, of 256 bits at most. NaN occurs only where the error of a simulation node is infinite, which
-/// decides the result.
-template <class T> using Lanes = Simd<T, block_lanes, 32>;
+/// 8 virtual lanes of T, in one vector where the target has one of that width. NaN occurs only where the error of a
+/// simulation node is infinite, which decides the result.
+template <class T> using Lanes = Simd<T, block_lanes>;
 
 template <class D, class V, class F> HWY_INLINE hn::TFromD<D> fold_vector(D, V v, [[maybe_unused]] F&& f)
 {
@@ -75,6 +75,18 @@ template <class T, class F> HWY_INLINE Lanes<T> fold(const Lanes<T> (&x)[block_l
             return f(v, hn::Shuffle2301(v));
         };
         out.v[0] = hn::OddEven(quarters(1, 3), quarters(0, 2));
+        return out;
+    } else if constexpr (sizeof(T) == 8 && Lanes<T>::width == 8) {
+        auto halves = [&](std::size_t a, std::size_t b) CINCH_FLATTEN {
+            return f(hn::ConcatLowerLower(d, x[b].v[0], x[a].v[0]), hn::ConcatUpperUpper(d, x[b].v[0], x[a].v[0]));
+        };
+        auto quarters = [&](std::size_t i) CINCH_FLATTEN { // of x[i], x[i + 2], x[i + 4], x[i + 6], two lanes of each
+            const auto one = halves(i, i + 4), two = halves(i + 2, i + 6);
+            return f(hn::OddEvenBlocks(hn::SwapAdjacentBlocks(two), one),
+                     hn::OddEvenBlocks(two, hn::SwapAdjacentBlocks(one)));
+        };
+        const auto even = quarters(0), odd = quarters(1);
+        out.v[0] = f(hn::InterleaveLower(d, even, odd), hn::InterleaveUpper(d, even, odd));
         return out;
     } else if constexpr (sizeof(T) == 8 && Lanes<T>::width == 4) {
         auto quarters = [&](std::size_t a, std::size_t b) CINCH_FLATTEN {
@@ -215,6 +227,18 @@ template <class T> HWY_INLINE void transpose(const T* const (&record)[block_lane
         row[1].v[0] = hn::BitCast(d, hn::InterleaveUpper(pairs, a, b));
         row[2].v[0] = hn::BitCast(d, hn::InterleaveLower(pairs, e, f));
         row[3].v[0] = hn::BitCast(d, hn::InterleaveUpper(pairs, e, f));
+    } else if constexpr (sizeof(T) == 8 && Lanes<T>::width == 8) {
+        const D d;
+        const hn::Half<D> half;
+        hn::Vec<D> v[4];
+        for (std::size_t i = 0; i < 4; ++i)
+            v[i] = hn::Combine(d, hn::LoadU(half, record[i + 4] + offset), hn::LoadU(half, record[i] + offset));
+        const auto a = hn::InterleaveLower(d, v[0], v[1]), b = hn::InterleaveLower(d, v[2], v[3]);
+        const auto e = hn::InterleaveUpper(d, v[0], v[1]), f = hn::InterleaveUpper(d, v[2], v[3]);
+        row[0].v[0] = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(b), a);
+        row[1].v[0] = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(f), e);
+        row[2].v[0] = hn::OddEvenBlocks(b, hn::SwapAdjacentBlocks(a));
+        row[3].v[0] = hn::OddEvenBlocks(f, hn::SwapAdjacentBlocks(e));
     } else if constexpr (sizeof(T) == 8 && Lanes<T>::width == 4) {
         const D d;
         for (std::size_t h = 0; h < 2; ++h) {

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 #include <utility>
 
 #include <hwy/highway.h>
@@ -25,7 +26,7 @@ namespace cinch::HWY_NAMESPACE {
 
 /// 4 rows of 4 values of T: of a projected map the rows q₀ q₁ q₂ θ of four axes. For BVs of few simulation nodes, which
 /// it takes as they stand.
-template <class T> using Rows = Simd<T, 16, (sizeof(T) == 4 ? 64 : 32)>;
+template <class T> using Rows = Simd<T, 16>;
 
 /// The same four values in every row.
 template <class T> HWY_INLINE Rows<T> each_row(const T* p) { return Rows<T>::fours(p); }
@@ -69,9 +70,9 @@ template <class T> HWY_INLINE Rows<T> row_sum(const Rows<T>& x)
     if constexpr (sizeof(T) == 4) {
         const auto pairs = each(x, [](auto v) { return hn::Add(v, hn::Shuffle2301(v)); });
         return each(pairs, [](auto v) { return hn::Add(v, hn::Shuffle1032(v)); });
-    } else if constexpr (Rows<T>::width == 4) {
+    } else if constexpr (Rows<T>::width >= 4) {
         const auto pairs = each(x, [](auto v) { return hn::Add(v, hn::Shuffle01(v)); });
-        return each(pairs, [](auto v) { return hn::Add(v, hn::ConcatLowerUpper(typename Rows<T>::D(), v, v)); });
+        return each(pairs, [](auto v) { return hn::Add(v, hn::SwapAdjacentBlocks(v)); });
     }
 #endif
     HWY_ALIGN T lane[16];
@@ -90,7 +91,7 @@ template <class T> HWY_INLINE Rows<T> exchange_sides(const Rows<T>& x)
 #if HWY_TARGET != HWY_SCALAR
     if constexpr (sizeof(T) == 4)
         return each(x, [](auto v) { return hn::Shuffle2301(v); });
-    else if constexpr (Rows<T>::width == 4)
+    else if constexpr (Rows<T>::width >= 4)
         return each(x, [](auto v) { return hn::Shuffle01(v); });
 #endif
     HWY_ALIGN T lane[16];
@@ -104,13 +105,13 @@ template <class T> HWY_INLINE Rows<T> exchange_sides(const Rows<T>& x)
 template <class T> HWY_INLINE Rows<T> row_sums(const Rows<T>& x, const Rows<T>& y)
 {
 #if HWY_TARGET != HWY_SCALAR
-    if constexpr (sizeof(T) == 4 || Rows<T>::width == 4) {
+    if constexpr (sizeof(T) == 4 || Rows<T>::width >= 4) {
         const auto pairs =
             each(x + exchange_sides(x), y + exchange_sides(y), [](auto a, auto b) { return hn::OddEven(b, a); });
         if constexpr (sizeof(T) == 4)
             return each(pairs, [](auto v) { return hn::Add(v, hn::Shuffle1032(v)); });
         else
-            return each(pairs, [](auto v) { return hn::Add(v, hn::ConcatLowerUpper(typename Rows<T>::D(), v, v)); });
+            return each(pairs, [](auto v) { return hn::Add(v, hn::SwapAdjacentBlocks(v)); });
     }
 #endif
     HWY_ALIGN T in[2][16], out[16];
@@ -137,6 +138,28 @@ template <std::size_t s, class T> HWY_INLINE Rows<T> column(const Rows<T>& x)
                                                      s, 4 + s, 8 + s, 12 + s, s, 4 + s, 8 + s, 12 + s};
         return {{hn::TableLookupLanes(x.v[0], hn::SetTableIndices(typename Rows<T>::D(), from))}};
     }
+#if HWY_TARGET != HWY_SCALAR
+    // Interleaved, rows 0 and 2 stand alternately in one half of a vector, 1 and 3 in the other.
+    [[maybe_unused]] const typename Rows<T>::D d;
+    [[maybe_unused]] auto interleaved = [&](auto a, auto b) HWY_ATTR {
+        constexpr bool upper = sizeof(T) == 4 ? s >= 2 : s % 2 == 1;
+        if constexpr (upper)
+            return hn::InterleaveUpper(d, a, b);
+        else
+            return hn::InterleaveLower(d, a, b);
+    };
+    if constexpr (Rows<T>::width == 8) {
+        using Index = std::conditional_t<sizeof(T) == 4, std::int32_t, std::int64_t>;
+        constexpr Index o = sizeof(T) == 4 ? s % 2 * 2 : s / 2 * 2;
+        HWY_ALIGN constexpr Index from[8] = {o, o + 4, o + 1, o + 5, o, o + 4, o + 1, o + 5};
+        const auto row = hn::TableLookupLanes(interleaved(x.v[0], x.v[1]), hn::SetTableIndices(d, from));
+        return {{row, row}};
+    } else if constexpr (sizeof(T) == 8 && Rows<T>::width == 4) {
+        const auto low = interleaved(x.v[0], x.v[1]), high = interleaved(x.v[2], x.v[3]);
+        const auto row = s < 2 ? hn::ConcatLowerLower(d, high, low) : hn::ConcatUpperUpper(d, high, low);
+        return {{row, row, row, row}};
+    }
+#endif
     HWY_ALIGN T lane[16], out[16];
     x.store(lane);
     for (std::size_t i = 0; i < 16; ++i)
@@ -154,6 +177,16 @@ template <class T> HWY_INLINE Rows<T> column_greatest(const Rows<T>& x)
         const auto half = hn::Max(x.v[0], hn::TableLookupLanes(x.v[0], hn::SetTableIndices(d, by_8)));
         return {{hn::Max(half, hn::TableLookupLanes(half, hn::SetTableIndices(d, by_4)))}};
     }
+#if HWY_TARGET != HWY_SCALAR
+    if constexpr (Rows<T>::width == 8) {
+        const auto pairs = hn::Max(x.v[0], x.v[1]),
+                   row = hn::Max(pairs, hn::ConcatLowerUpper(typename Rows<T>::D(), pairs, pairs));
+        return {{row, row}};
+    } else if constexpr (Rows<T>::width == 4) {
+        const auto row = hn::Max(hn::Max(x.v[0], x.v[1]), hn::Max(x.v[2], x.v[3]));
+        return {{row, row, row, row}};
+    }
+#endif
     HWY_ALIGN T lane[16];
     x.store(lane);
     for (std::size_t s = 0; s < 4; ++s) {

@@ -48,6 +48,10 @@ template <class T, std::size_t N, std::size_t kBytes = 64> struct Simd {
                 x.v[i] = hn::Set(D(), p[i % 4]);
             else if constexpr (sizeof(T) == 4)
                 x.v[i] = hn::LoadDup128(D(), p);
+#if HWY_TARGET != HWY_SCALAR
+            else if constexpr (width == 8)
+                x.v[i] = hn::Combine(D(), hn::LoadU(hn::Half<D>(), p), hn::LoadU(hn::Half<D>(), p));
+#endif
             else
                 x.v[i] = hn::LoadU(D(), p + i * width % 4);
         }
