@@ -15,8 +15,8 @@ template <class T> struct PreparedKernel {
     KernelScratch<T> scratch;
 };
 
-template <class T> void add(const CostSample& sample, int kdop, const ChosenKinds& kinds, Method method,
-                            std::vector<CostContestant>& all)
+template <class T>
+void add(const CostSample& sample, int kdop, const ChosenKinds& kinds, Method method, std::vector<CostContestant>& all)
 {
     for (const Rounding rounding : {Rounding::plain, Rounding::proven}) {
         const auto prepared = std::make_shared<PreparedKernel<T>>();

@@ -191,8 +191,7 @@ TEST_CASE("a BVH that is moved in is kept for every method")
             moved.add(build_bvh(bodies.surface[b], ClusterSize{16, 16}), bodies.surface[b]);
             lent.add(trees[b], bodies.surface[b]);
         }
-        const bool refers =
-            Methods(Method::sphere | Method::corners | Method::vertices).contains(method);
+        const bool refers = Methods(Method::sphere | Method::corners | Method::vertices).contains(method);
         CHECK((moved.bytes() > lent.bytes()) == refers);
         for (std::size_t f = 0; f < truth.size(); ++f) {
             moved.update(bodies.frame[f]);
