@@ -42,10 +42,11 @@ inline ExactLifted lifted(const DeformableSurface& surface, const RestBv& bv, co
                 m[a][b] = m[a][b] + Exact(row.weight[i]) * Exact(z[a]) * Exact(z[b]);
         }
     }
-    ExactLifted out{d[0], d[1], d[2], xi[0] - d[0], xi[1] - d[1], xi[2] - d[2]};
+    const Exact per_unit(1 / rest.unit); // a power of two
+    ExactLifted out{d[0], d[1], d[2], xi[0] - d[0] * per_unit, xi[1] - d[1] * per_unit, xi[2] - d[2] * per_unit};
     for (std::size_t s = 0; s < 3; ++s)
         for (std::size_t b = 0; b < 3; ++b)
-            out[6 + 3 * s + b] = d[b] * xi[s] - half(m[b][s]);
+            out[6 + 3 * s + b] = d[b] * xi[s] - half(Exact(rest.unit) * m[b][s]);
     return out;
 }
 

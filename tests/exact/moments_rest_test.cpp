@@ -86,10 +86,10 @@ TEST_CASE("the slack is what convex combinations of the points leave of lifted v
             std::vector<Vec3> place;
             for (const std::uint32_t node : row.node)
                 place.push_back(moments.influence[place_in(rest, node)].place);
-            rounded.push_back(lift(scene.e.surface.mesh.vertices[k] - moments.centre, row, place).value);
+            rounded.push_back(lift(scene.e.surface.mesh.vertices[k] - moments.centre, row, place, moments.unit).value);
         }
-        const LiftedPoints points = choose_lifted(rounded, lifted_scale(scene.bvh.bvs[0].box.half.maxCoeff()),
-                                                  lifted_points_of(rounded.size()));
+        const LiftedPoints points =
+            choose_lifted(rounded, lifted_scale(moments.unit), lifted_points_of(rounded.size()));
         ExactLifted least, greatest;
         for (std::size_t n = 0; n < vertices.size(); ++n) {
             if (points.combination[n].empty())

@@ -18,7 +18,7 @@ struct ExactRemainder {
 };
 
 // s_j and r_j for any numbers.
-ExactRemainder remainder(const MomentFit& fit, const Vec3& z, const Vec3& centre, const AffineMap& map,
+ExactRemainder remainder(const MomentFit& fit, const Vec3& z, const RestMoments& rest, const AffineMap& map,
                          const Axis& axis)
 {
     const auto extremum_at = [&](const Vec3& x) { return extremum<Exact>(x, Vec3::Zero(), map, axis).plus; };
@@ -26,13 +26,13 @@ ExactRemainder remainder(const MomentFit& fit, const Vec3& z, const Vec3& centre
     Point<Exact> q, gz;
     for (int a = 0; a < 3; ++a)
         q[static_cast<std::size_t>(a)] = extremum_at(Vec3::Unit(a)) - at_zero;
-    ExactRemainder out{extremum_at(centre) - Exact(fit.phi), {}};
+    ExactRemainder out{extremum_at(rest.centre) - Exact(fit.phi), {}};
     for (std::size_t a = 0; a < 3; ++a) {
         const auto i = static_cast<int>(a);
         for (int b = 0; b < 3; ++b)
             gz[a] = gz[a] + Exact(fit.column[b][i]) * Exact(z[b]);
-        out.r[a] = q[a] - (Exact(fit.linear[i]) - Exact(fit.g[i])) - gz[a];
-        out.s = out.s + half(Exact(z[i]) * gz[a]) - Exact(fit.g[i]) * Exact(z[i]);
+        out.r[a] = q[a] - (Exact(fit.linear[i]) - Exact(fit.g[i]) * Exact(1 / rest.unit)) - gz[a];
+        out.s = out.s + half(Exact(rest.unit) * Exact(z[i]) * gz[a]) - Exact(fit.g[i]) * Exact(z[i]);
     }
     return out;
 }
@@ -79,7 +79,7 @@ std::pair<double, double> used_errors(const MomentScene& scene)
                 ++finite;
                 for (std::size_t j = 0; j < rest.node.size(); ++j) {
                     const MomentInfluence& own = moments.influence[j];
-                    const ExactRemainder exactly = remainder(fit, own.place, moments.centre, frame[rest.node[j]], axis);
+                    const ExactRemainder exactly = remainder(fit, own.place, moments, frame[rest.node[j]], axis);
                     Exact position = exactly.s, radius(0);
                     for (int a = 0; a < 3; ++a) {
                         const Exact& r = exactly.r[static_cast<std::size_t>(a)];
@@ -132,8 +132,8 @@ TEST_CASE("the identity of the moment bound holds for any numbers, exactly")
                 const Weights::Row row = scene.e.surface.weights.of(k);
                 for (std::size_t i = 0; i < row.node.size(); ++i) {
                     const auto j = place_in(rest, row.node[i]);
-                    const ExactRemainder own = remainder(fit, moments.influence[j].place, moments.centre,
-                                                         scene.e.frames[2][row.node[i]], axis);
+                    const ExactRemainder own =
+                        remainder(fit, moments.influence[j].place, moments, scene.e.frames[2][row.node[i]], axis);
                     Exact of_node = own.s;
                     for (int a = 0; a < 3; ++a)
                         of_node = of_node + own.r[static_cast<std::size_t>(a)] *

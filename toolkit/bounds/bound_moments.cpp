@@ -99,12 +99,12 @@ MomentFit fit_moments(const RestBv& bv, const RestMoments& rest, std::span<const
     }
     for (std::size_t j = 0; j < bv.node.size(); ++j) {
         const MomentInfluence& own = rest.influence[j];
-        const double value =
-            centred(axis, maps[bv.node[j]], rest.centre).p + 0.5 * product(own.place, g_times(fit, own.place));
+        const double value = centred(axis, maps[bv.node[j]], rest.centre).p +
+                             0.5 * rest.unit * product(own.place, g_times(fit, own.place));
         fit.phi += own.mean * value;
         fit.g += value * own.gradient;
     }
-    fit.linear = mean + fit.g;
+    fit.linear = mean + fit.g / rest.unit;
     return fit;
 }
 
@@ -113,7 +113,8 @@ MomentFit fit_moments(const RestBv& bv, const RestMoments& rest, std::span<const
 // in p 6 and the sums 4; G in G z 3, in r 1, and as A from there, or in zᵀGz 3 and the sums 4; g fewer. So b̂ is within
 // γ₁₀ M of b, M the sum of the absolute leaves, which is computed from non-negative leaves with at most 14: M ≤
 // M̂/(1 − γ₁₄) and what it loses below; 16u leaves room for the product and the sum. Products of a node lose at most
-// η/2 each: 15 of factor 1, and 9 of G z, which then meet d or z: 64η(1 + |z|₁ + |y|₁ + |e|₁) covers both.
+// η/2 each: 15 of factor 1 or σ, and 12 of G z and g/σ, which then meet d or σz: 64η(1 + (1 + σ)(1 + |z|₁) + |y|₁ +
+// |e|₁) covers both.
 double remainder_extrema(const RestBv& bv, const RestMoments& rest, std::span<const AffineMap> maps, const Axis& axis,
                          const MomentFit& fit, std::span<double> plus, std::span<double> minus)
 {
@@ -124,17 +125,19 @@ double remainder_extrema(const RestBv& bv, const RestMoments& rest, std::span<co
         const MomentInfluence& own = rest.influence[j];
         const CentredFunctional f = centred(axis, maps[bv.node[j]], rest.centre);
         const Vec3 &z = own.place, &y = own.local.centre, &e = own.local.half, at = z.cwiseAbs();
-        const Vec3 gz = g_times(fit, z), r = ((f.q + fit.g) - fit.linear) - gz;
-        const double s = (f.p - fit.phi) + (0.5 * product(z, gz) - product(fit.g, z)), position = s + product(r, y),
-                     radius = product(r.cwiseAbs(), e);
+        const Vec3 gz = g_times(fit, z), r = ((f.q + fit.g / rest.unit) - fit.linear) - gz;
+        const double s = (f.p - fit.phi) + (0.5 * rest.unit * product(z, gz) - product(fit.g, z)),
+                     position = s + product(r, y), radius = product(r.cwiseAbs(), e);
         plus[j] = radius + position;
         minus[j] = radius - position;
 
-        const Vec3 gz_leaves = g_times(leaves, at), r_leaves = ((f.q_leaves + leaves.g) + leaves.linear) + gz_leaves;
-        const double s_leaves = (f.p_leaves + leaves.phi) + (0.5 * product(at, gz_leaves) + product(leaves.g, at)),
+        const Vec3 gz_leaves = g_times(leaves, at),
+                   r_leaves = ((f.q_leaves + leaves.g / rest.unit) + leaves.linear) + gz_leaves;
+        const double s_leaves =
+                         (f.p_leaves + leaves.phi) + (0.5 * rest.unit * product(at, gz_leaves) + product(leaves.g, at)),
                      own_magnitude = s_leaves + product(r_leaves, y.cwiseAbs() + e);
         magnitude = std::max(magnitude, own_magnitude);
-        reach = std::max(reach, (at.lpNorm<1>() + y.lpNorm<1>()) + e.lpNorm<1>());
+        reach = std::max(reach, ((1 + rest.unit) * (1 + at.lpNorm<1>()) + y.lpNorm<1>()) + e.lpNorm<1>());
         finite &= own_magnitude < infinite; // false for NaN
     }
     return finite ? succ(16 * unit_roundoff * magnitude + 64 * smallest_subnormal * (1 + reach)) : infinite;

@@ -12,14 +12,14 @@
 namespace cinch {
 
 /// A vertex in the lifted space of the moment bound. With d = v⁰ − c, the first moments ξ = Σ_j w_j z_j and the second
-/// moments M = Σ_j w_j z_j z_jᵀ of its weights about the places z_j of the simulation nodes:
-///   d (3),  ξ − d (3),  and N = d ξᵀ − M/2 by columns (9).
+/// moments M = Σ_j w_j z_j z_jᵀ of its weights about the places σ z_j of the simulation nodes, σ a unit of length:
+///   d (3),  ξ − d/σ (3),  and N = d ξᵀ − σM/2 by columns (9).
 inline constexpr std::size_t lifted_size = 15;
 using Lifted = std::array<double, lifted_size>;
 
 /// What the moment bound knows of one simulation node, about a BV's centre c. Any numbers are valid but for the box.
 struct MomentInfluence {
-    Vec3 place = Vec3::Zero();    ///< z; of float precision, so that all arithmetics share it
+    Vec3 place = Vec3::Zero();    ///< z, in units σ; of float precision, so that all arithmetics share it
     double mean = 0;              ///< m, about its mean weight, and
     Vec3 gradient = Vec3::Zero(); ///< f: Σ_j m_j y_j + (Σ_j f_j y_j)·z is about the weighted linear fit of y_j at z_j
     RestBox local;                ///< holds d of every vertex that the node influences
@@ -29,6 +29,7 @@ struct MomentInfluence {
 /// points differs from its lifted vector by what lies between `least` ≤ 0 and `greatest` ≥ 0, component by component.
 struct RestMoments {
     Vec3 centre = Vec3::Zero();                 ///< c; less the rest origin it is of float precision
+    double unit = 1;                            ///< σ, a power of two
     std::span<const MomentInfluence> influence; ///< parallel to RestBv::node
     std::span<const Lifted> point;              ///< at least one
     Lifted least{}, greatest{};
@@ -46,14 +47,14 @@ struct MomentFit {
 
 /// The moment bound: third order in how far the simulation nodes of a BV lie from each other. With q_j = A_jᵀγ, p_j =
 /// γ·(A_j c + t_j), a number φ, vectors l and g and a matrix G, all arbitrary, and
-///   r_j = q_j − (l − g) − G z_j,   s_j = p_j + z_jᵀ G z_j/2 − φ − g·z_j,
+///   r_j = q_j − (l − g/σ) − G z_j,   s_j = p_j + σ z_jᵀ G z_j/2 − φ − g·z_j,
 /// every vertex is exactly
-///   γ·v = φ + l·d + g·(ξ − d) + G:N + Σ_j w_j (s_j + r_j·d):
-/// Σ w_j r_j·d takes from Σ w_j q_j·d what l·d − g·d and dᵀGξ add, and Σ w_j s_j from Σ w_j p_j what φ, g·ξ and −G:M/2
-/// add. All but the last sum is linear in the lifted vector: its support over the points, and what the slack adds. The
-/// last sum is D at the best λ over extrema on the nodes' own boxes. The numbers come from linear fits of q_j and of
-/// p_j
-/// + z_jᵀ G z_j/2 over z_j, so that s and r are small (they vanish where maps are the values and gradients of a
+///   γ·v = φ + l·d + g·(ξ − d/σ) + G:N + Σ_j w_j (s_j + r_j·d):
+/// Σ w_j r_j·d takes from Σ w_j q_j·d what l·d − g·d/σ and dᵀGξ add, and Σ w_j s_j from Σ w_j p_j what φ, g·ξ and
+/// −σG:M/2 add. The unit keeps squares of lengths from overflowing. All but the last sum is linear in the lifted
+/// vector: its support over the points, and what the slack adds. The last sum is D at the best λ over extrema on the
+/// nodes' own boxes. The numbers come from linear fits of q_j and of p_j
+/// + σ z_jᵀ G z_j/2 over z_j, so that s and r are small (they vanish where maps are the values and gradients of a
 /// quadratic motion at the places): whatever rounding makes of the numbers is still exact.
 /// Supports as bound_box, proven likewise. With a `start` λ lies where readable_bound has it.
 void bound_moments(const RestBv& bv, const RestMoments& rest, std::span<const AffineMap> maps, Rounding rounding,

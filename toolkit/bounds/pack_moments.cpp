@@ -87,16 +87,17 @@ template <class T> void pack_moments(const RestBv& rest, const RestMoments& mome
             gradients[i] += std::abs(static_cast<double>(own[s]));
             places[i] = std::max(places[i], std::abs(influence.place[i]));
             levers[i] =
-                std::max(levers[i], 0.5 * std::abs(influence.place[i]) +
+                std::max(levers[i], 0.5 * moments.unit * std::abs(influence.place[i]) +
                                         std::abs(static_cast<double>(bv.pivot[s]) - static_cast<double>(box[s])));
             halves[i] = std::max(halves[i], static_cast<double>(box[3 + s]));
         }
-        const Eigen::Matrix3d own_second = 0.5 * influence.place * influence.place.transpose();
+        const Eigen::Matrix3d own_second = 0.5 * moments.unit * influence.place * influence.place.transpose();
         for (int s = 0; s < 3; ++s)
             second[s] += influence.gradient[s] * own_second;
         second[3] += means[j] * own_second;
         value.insert(value.end(), own, own + moment_values);
     }
+    put_exactly(1 / moments.unit, value[head + moment_head_reach + 3]);
     MomentReach of;
     for (std::size_t s = 0; s < 4; ++s)
         for (std::size_t a = 0; a < 3; ++a) {
@@ -112,7 +113,7 @@ template <class T> void pack_moments(const RestBv& rest, const RestMoments& mome
         value[head + moment_head_reach + s] = round_up<T>(places[i]);
         of.gradient[s] = gradients[i];
         of.place[s] = places[i];
-        of.first[s] = lifted[s] + lifted[3 + s];
+        of.first[s] = lifted[s] / moments.unit + lifted[3 + s];
         of.second[s] = greatest_share(&lifted[6 + 3 * s], reach);
     }
     of.centre = greatest_share(bv.pivot, reach);

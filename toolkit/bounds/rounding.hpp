@@ -155,21 +155,21 @@ inline double linear_error_factor(std::size_t nodes, double kappa) noexcept
 
 /// What the rest data of a BV of the kind moments reaches, lengths along coordinate i in units of X_i.
 struct MomentReach {
-    double gradient[3], place[3];  ///< Σ_j |f_js|, and greatest |z_js|; times each other they have no unit
+    double gradient[3], place[3];  ///< Σ_j |f_js|, and greatest |z_js|; they have no unit
     double row[4][3];              ///< of each of the rows that make g_0, g_1, g_2 and φ of the columns of G
-    double first[3], second[3];    ///< greatest |d_s| + |ξ_s − d_s| of points and slack, and |N_is| over i
-    double d, centre, lever, half; ///< greatest |d_i|, |c_i|, |z_i|/2 + |y_i|, and half of a node's box
+    double first[3], second[3];    ///< greatest |d_s|/σ + |ξ_s − d_s/σ| of points and slack, and |N_is| over i
+    double d, centre, lever, half; ///< greatest |d_i|, |c_i|, σ|z_i|/2 + |y_i|, and half of a node's box
 };
 
 /// By how much a BV of the kind moments multiplies its nodes' errors. The identity holds for the numbers q̄, G, g and φ
 /// as they are computed; what is lost is in what comes of them. In units of 2.01N, 1.03 for the roundings of the
 /// numbers themselves: Σ_i |G_is| X_i ≤ Γ_s = Σ_j|f_js|, |g_s| ≤ Σ_a Γ_a row_sa, |φ| likewise, |G z| ≤ W = Σ_s Γ_s
 /// place_s, and φ + g·z at most W₃. Then
-///   b̂_j: 3 (fma) + 2 (z/2 − y) + 1 (×) + 1 (fma) + 1 (±) + 2 (sum of four) = 10 roundings on 1 + W lever + W₃ + (1 +
+///   b̂_j: 3 (fma) + 2 (σz/2 − y) + 1 (×) + 1 (fma) + 1 (±) + 2 (sum of four) = 10 roundings on 1 + W lever + W₃ + (1 +
 ///   W) half;
 ///   points and slack: 1 (l) + 4 (fma) + 2 (sum of four) = 7 on 1.01N d + 2.01N Σ_s(|g_s| first_s + Γ_s second_s);
 ///   q̄·c + θ̄: 3 on 1.01N max(1, centre);  stored q, θ: 3u N. Sums of these are rounded up.
-/// Products: 12 of G z, which then meet z/2 − y or e, 16 of each point and of the slack, 11 and 4 others lose ≤ η/2
+/// Products: 12 of G z, which then meet σz/2 − y or e, 16 of each point and of the slack, 11 and 4 others lose ≤ η/2
 /// each: (12(1 + lever + half) + 47) η (1 + ΣX)/2, in units of 128η(1 + ΣX).
 /// Infinite from 2¹⁶ on: below that, what kernels check besides aside, no product overflows.
 inline double moment_error_factor(const MomentReach& of) noexcept

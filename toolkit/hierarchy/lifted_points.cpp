@@ -119,7 +119,7 @@ private:
 // Of n influences: d is off by u|d|, ξ by γ_n Σ w|z|, M by γ_{n+1} Σ w|z_a z_b|, so leaves of the products and sums of
 // these pass at most n + 4 roundings, and the sums of absolute leaves at most n + 5: (n + 8)u of them leaves room for
 // both, for n < 2²⁰. A product loses at most η/2: n for each ξ, which then meets |d|, and 2n for each M.
-LiftedVertex lift(const Vec3& d, Weights::Row row, std::span<const Vec3> place)
+LiftedVertex lift(const Vec3& d, Weights::Row row, std::span<const Vec3> place, double unit)
 {
     Vec3 xi = Vec3::Zero(), xi_leaves = xi;
     Eigen::Matrix3d m = Eigen::Matrix3d::Zero(), m_leaves = m;
@@ -140,10 +140,10 @@ LiftedVertex lift(const Vec3& d, Weights::Row row, std::span<const Vec3> place)
     for (std::size_t b = 0; b < 3; ++b) {
         const auto i = static_cast<int>(b);
         set(b, d[i], std::abs(d[i]), 0);
-        set(3 + b, xi[i] - d[i], xi_leaves[i] + std::abs(d[i]), 0);
+        set(3 + b, xi[i] - d[i] / unit, xi_leaves[i] + std::abs(d[i] / unit), 0);
         for (int s = 0; s < 3; ++s)
-            set(6 + 3 * static_cast<std::size_t>(s) + b, d[i] * xi[s] - 0.5 * m(i, s),
-                std::abs(d[i]) * xi_leaves[s] + 0.5 * m_leaves(i, s), reach);
+            set(6 + 3 * static_cast<std::size_t>(s) + b, d[i] * xi[s] - 0.5 * unit * m(i, s),
+                std::abs(d[i]) * xi_leaves[s] + 0.5 * unit * m_leaves(i, s), reach + unit);
     }
     return out;
 }
@@ -152,7 +152,7 @@ Lifted lifted_scale(double unit)
 {
     Lifted scale;
     for (std::size_t c = 0; c < lifted_size; ++c)
-        scale[c] = c < 6 ? 1 : 0.5 / unit;
+        scale[c] = c < 3 ? 1 / unit : c < 6 ? 1 : 0.5 / unit;
     return scale;
 }
 

@@ -14,8 +14,8 @@ struct LiftedVertex {
     Lifted value{}, off{};
 };
 
-/// Of a vertex at d (off by u|d|) whose simulation nodes stand at these places.
-LiftedVertex lift(const Vec3& d, Weights::Row row, std::span<const Vec3> place);
+/// Of a vertex at d (off by u|d|) whose simulation nodes stand at these places, in units.
+LiftedVertex lift(const Vec3& d, Weights::Row row, std::span<const Vec3> place, double unit);
 
 /// Few of many lifted vectors whose hull comes near all of them.
 struct LiftedPoints {

@@ -83,38 +83,59 @@ Eigen::Matrix3d inverted(const Eigen::Matrix3d& covariance)
     return inverse;
 }
 
-// To 24 bits; 0 for what is out of all proportion.
-double to_24_bits(double z, double unit)
+// To 24 bits; 0 for what is out of all proportion to 1.
+double to_24_bits(double z)
 {
     const double split = 0x1p29 * z + z, rounded = split - (split - z); // [Veltkamp 1968]
-    return std::abs(z) < 0x1p20 * unit && std::abs(z) > 0x1p-40 * unit && std::isfinite(rounded) ? rounded : 0;
+    return std::abs(z) < 0x1p20 && std::abs(z) > 0x1p-40 ? rounded : 0;
 }
 
-// The mean of the places by mean weights, of 24 bits about the rest origin: any centre is as good.
-Vec3 centre_near(const Vec3& mean, const Vec3& pivot, const Vec3& origin, double unit)
-{
-    Vec3 centre;
-    for (int s = 0; s < 3; ++s) {
-        const double d = mean[s] - origin[s];
-        centre[s] = origin[s] + to_24_bits(std::abs(d) < 64 * unit ? d : pivot[s] - origin[s], unit);
+// Of the whole surface, by the root's box.
+struct Frame {
+    Vec3 origin, centre, half; // rest origin, and the box
+    double unit;               // of length
+
+    Frame(const Bvh& bvh, const DeformableSurface& surface) : origin(rest_extent(bvh, surface).origin)
+    {
+        const RestBox& box = bvh.bvs[0].box;
+        centre = box.centre;
+        half = box.half;
+        const double most = half.maxCoeff();
+        unit = most > 0 && most < 0x1p1000 ? std::exp2(std::clamp(std::round(std::log2(most)), -1000.0, 1000.0)) : 1;
     }
-    return centre;
-}
+    // Any place is valid; one far outside the box would only cost room for rounding.
+    Vec3 place(const Vec3& x) const
+    {
+        Vec3 out;
+        for (int s = 0; s < 3; ++s)
+            out[s] =
+                std::isfinite(x[s]) ? std::clamp(x[s], centre[s] - 4 * half[s], centre[s] + 4 * half[s]) : centre[s];
+        return out;
+    }
+    // Of 24 bits about the rest origin.
+    Vec3 near(const Vec3& mean) const
+    {
+        Vec3 out;
+        for (int s = 0; s < 3; ++s)
+            out[s] = origin[s] + unit * to_24_bits((mean[s] - origin[s]) / unit);
+        return out;
+    }
+};
 
 // Coefficients of the linear fit over the places, weighted by the mean weights: their mean is near 0.
-void fit_places(std::span<MomentInfluence> influence, std::span<const WeightModel> model, double unit)
+void fit_places(std::span<MomentInfluence> influence, std::span<const WeightModel> model)
 {
     Vec3 mean = Vec3::Zero();
     for (std::size_t j = 0; j < influence.size(); ++j)
         mean += model[j].mean * influence[j].place;
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
     for (std::size_t j = 0; j < influence.size(); ++j) {
-        const Vec3 from = (influence[j].place - mean) / unit;
+        const Vec3 from = influence[j].place - mean;
         covariance += model[j].mean * from * from.transpose();
     }
     const Eigen::Matrix3d inverse = inverted(covariance);
     for (std::size_t j = 0; j < influence.size(); ++j) {
-        const Vec3 gradient = model[j].mean * (inverse * ((influence[j].place - mean) / unit)) / unit;
+        const Vec3 gradient = model[j].mean * (inverse * (influence[j].place - mean));
         if (std::isfinite(gradient.sum()))
             influence[j].gradient = gradient;
         influence[j].mean = model[j].mean;
@@ -122,7 +143,7 @@ void fit_places(std::span<MomentInfluence> influence, std::span<const WeightMode
 }
 
 OwnMoments prepare(const DeformableSurface& surface, const Bvh& bvh, const Bv& bv, std::span<const Vec3> place,
-                   const Vec3& origin, double unit, std::span<MomentInfluence> influence)
+                   const Frame& frame, std::span<MomentInfluence> influence)
 {
     OwnMoments own;
     const auto nodes = std::span(bvh.node).subspan(bv.first_influence, bv.influence_count);
@@ -133,11 +154,11 @@ OwnMoments prepare(const DeformableSurface& surface, const Bvh& bvh, const Bv& b
         mean += models[j].mean * place[nodes[j]];
         at[nodes[j]] = static_cast<std::uint32_t>(j);
     }
-    own.centre = centre_near(mean, bv.pivot, origin, unit);
+    own.centre = frame.near(mean);
     for (std::size_t j = 0; j < nodes.size(); ++j)
         for (int s = 0; s < 3; ++s) // what is rounded is another place, as good
-            influence[j].place[s] = to_24_bits(place[nodes[j]][s] - own.centre[s], unit);
-    fit_places(influence, models, unit);
+            influence[j].place[s] = to_24_bits((place[nodes[j]][s] - own.centre[s]) / frame.unit);
+    fit_places(influence, models);
 
     const std::vector<std::uint32_t> vertices = vertices_of(surface, bvh, bv);
     std::vector<LocalBox> local(nodes.size());
@@ -152,13 +173,13 @@ OwnMoments prepare(const DeformableSurface& surface, const Bvh& bvh, const Bv& b
             own_place.push_back(influence[at[node]].place);
             local[at[node]].include(d);
         }
-        lifted.push_back(lift(d, row, own_place));
+        lifted.push_back(lift(d, row, own_place, frame.unit));
         value.push_back(lifted.back().value);
     }
     for (std::size_t j = 0; j < nodes.size(); ++j)
         influence[j].local = local[j].around();
 
-    const LiftedPoints points = choose_lifted(value, lifted_scale(unit), lifted_points_of(value.size()));
+    const LiftedPoints points = choose_lifted(value, lifted_scale(frame.unit), lifted_points_of(value.size()));
     Lifted most{};
     for (const std::uint32_t k : points.chosen) {
         own.point.push_back(value[k]);
@@ -182,28 +203,31 @@ MomentData rest_moments(const Bvh& bvh, const DeformableSurface& surface, const 
 {
     MomentData out;
     out.influence.assign(bvh.node.size(), {});
-    const std::vector<Vec3> place =
-        surface.place.size() == surface.weights.node_count ? surface.place : node_places(surface);
+    out.first_point.push_back(0);
+    if (bvh.bvs.empty())
+        return out;
+    const Frame frame(bvh, surface);
+    out.unit = frame.unit;
+    std::vector<Vec3> place = surface.place.size() == surface.weights.node_count ? surface.place : node_places(surface);
+    for (Vec3& x : place)
+        x = frame.place(x);
     std::vector<OwnMoments> own(bvh.bvs.size());
-    const double half = bvh.bvs.empty() ? 0 : bvh.bvs[0].box.half.maxCoeff(), unit = half > 0 ? half : 1;
-    const Vec3 origin = rest_extent(bvh, surface).origin;
     parallel_blocks(bvh.bvs.size(), 4, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             const Bv& bv = bvh.bvs[i];
             if (wanted(bv))
-                own[i] = prepare(surface, bvh, bv, place, origin, unit,
+                own[i] = prepare(surface, bvh, bv, place, frame,
                                  std::span(out.influence).subspan(bv.first_influence, bv.influence_count));
         }
     });
     for (OwnMoments& bv : own) {
         out.centre.push_back(bv.centre);
-        out.first_point.push_back(out.point.size());
         out.point.insert(out.point.end(), bv.point.begin(), bv.point.end());
+        out.first_point.push_back(out.point.size());
         out.least.push_back(bv.least);
         out.greatest.push_back(bv.greatest);
         bv = {};
     }
-    out.first_point.push_back(out.point.size());
     return out;
 }
 

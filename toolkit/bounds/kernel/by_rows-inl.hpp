@@ -42,7 +42,7 @@ template <class T, std::size_t kAxes> void bound_by_rows(const KernelInput<T>& i
         if (moments)
             for (std::size_t c = 0; c < chunks; ++c) {
                 numbers[c] = moment_numbers<T, kAxes>(bv, *in.maps, node, head, value, reference.chunk[c], c);
-                moment_extrema<T, kAxes>(bv, *in.maps, node, value, reference.chunk[c], numbers[c], c,
+                moment_extrema<T, kAxes>(bv, *in.maps, node, head, value, reference.chunk[c], numbers[c], c,
                                          b + 16 * c * bv.count, e);
             }
         else

@@ -13,9 +13,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace cinch::HWY_NAMESPACE {
 
-/// The numbers of the moment bound for four axes, one a row, relative to the mean map q̄, θ̄ (bound_moments.hpp): with
-/// d_j = (q_j − q̄, θ_j − θ̄), the columns of G are Σ_j f_js d_j, and g_s the same of (q_j − q̄)·c + θ_j − θ̄ + z_jᵀ G
-/// z_j/2, whose quadratic parts are sums over rest data. φ likewise with the mean weights. l − g = q̄.
+/// The numbers of the moment bound for four axes, one a row, relative to the mean map q̄, θ̄ (bound_moments.hpp): with d_j
+/// = (q_j − q̄, θ_j − θ̄), the columns of G are Σ_j f_js d_j, and g_s the same of (q_j − q̄)·c + θ_j − θ̄ + σ z_jᵀGz_j/2,
+/// whose quadratic parts are sums over rest data. φ likewise with the mean weights. l − g/σ = q̄.
 template <class T> struct MomentNumbers {
     Rows<T> column[3];   ///< G's, with g in the fourth place
     Rows<T> phi;         ///< everywhere
@@ -54,7 +54,7 @@ HWY_INLINE MomentNumbers<T> moment_numbers(const PackedBv<T>& bv, const Projecte
     }
     out.phi = over(head + moment_head_phi);
     const auto last = [&](std::size_t b) HWY_ATTR { return row_sum(column[2] * each_row<T>(unit[b])); };
-    out.function[0] = with_fourth(mean + all_g, last(0));
+    out.function[0] = with_fourth(mean + all_g * R::all(head[moment_head_reach + 3]), last(0));
     out.function[1] = with_fourth(all_g, last(1));
     out.function[2] = with_fourth(column[0], last(2));
     out.function[3] = with_fourth(column[1], zero);
@@ -103,16 +103,16 @@ template <class T> HWY_INLINE void add_lifted_support(const PackedBv<T>& bv, con
 
 /// b̂_j of every simulation node along and against the axes, into b as support_extrema: greatest s_j + r_j·d over its
 /// own box Y ± e about the rest origin. With w = G z_j, and φ + g·z_j in the fourth place,
-///   s_j + r_j·d = (q_j − q̄)·Y + θ_j − θ̄ + w·(z_j/2 − y) − (φ + g·z_j),  y = Y − c, and |q_j − q̄ − w|·e about it.
+///   s_j + r_j·d = (q_j − q̄)·Y + θ_j − θ̄ + w·(σz_j/2 − y) − (φ + g·z_j),  y = Y − c, and |q_j − q̄ − w|·e about it.
 template <class T, std::size_t kAxes>
 HWY_INLINE void moment_extrema(const PackedBv<T>& bv, const ProjectedMaps<T>& maps, const std::uint32_t* node,
-                               const T* value, const Rows<T>& mean, const MomentNumbers<T>& numbers, std::size_t c,
-                               T* b, RowExtrema<T, kAxes>& out)
+                               const T* head, const T* value, const Rows<T>& mean, const MomentNumbers<T>& numbers,
+                               std::size_t c, T* b, RowExtrema<T, kAxes>& out)
 {
     using R = Rows<T>;
     HWY_ALIGN static constexpr T less[4] = {0, 0, 0, -1};
-    const auto one = R::all(1), zero = R::all(0), half = R::all(T(0.5)), centre = each_row<T>(bv.pivot),
-               fourth = each_row<T>(less);
+    const auto one = R::all(1), zero = R::all(0), half = R::all(T(0.5) / head[moment_head_reach + 3]),
+               centre = each_row<T>(bv.pivot), fourth = each_row<T>(less);
     const auto start = with_fourth(zero, numbers.phi);
     auto most = R::all(-infinity_of<T>), sum = zero;
     for (std::size_t j = 0; j < bv.count; ++j, b += 16, value += moment_values) {
