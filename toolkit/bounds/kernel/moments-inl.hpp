@@ -13,9 +13,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace cinch::HWY_NAMESPACE {
 
-/// The numbers of the moment bound for four axes, one a row, relative to the mean map q̄, θ̄ (bound_moments.hpp): with d_j
-/// = (q_j − q̄, θ_j − θ̄), the columns of G are Σ_j f_js d_j, and g_s the same of (q_j − q̄)·c + θ_j − θ̄ + σ z_jᵀGz_j/2,
-/// whose quadratic parts are sums over rest data. φ likewise with the mean weights. l − g/σ = q̄.
+/// The numbers of the moment bound for four axes, one a row, relative to the mean map q̄, θ̄ (bound_moments.hpp): with
+/// d_j = (q_j − q̄, θ_j − θ̄), the columns of G are Σ_j f_js d_j, and g_s the same of (q_j − q̄)·c + θ_j − θ̄ + σ
+/// z_jᵀGz_j/2, whose quadratic parts are sums over rest data. φ likewise with the mean weights. l − g/σ = q̄.
 template <class T> struct MomentNumbers {
     Rows<T> column[3];   ///< G's, with g in the fourth place
     Rows<T> phi;         ///< everywhere
