@@ -5,7 +5,10 @@
 #include <catch2/catch.hpp>
 
 #include "tests/exact/lifted_exactly.hpp"
+#include "toolkit/bounds/pack_moments.hpp"
+#include "toolkit/bounds/rounding.hpp"
 #include "toolkit/hierarchy/lifted_points.hpp"
+#include "toolkit/hierarchy/packed_bvh.hpp"
 
 using namespace cinch;
 using namespace cinch::exact;
@@ -145,4 +148,67 @@ TEST_CASE("no linear functional of lifted vertices exceeds its support over the 
         }
     }
     CHECK(checked > 3000);
+}
+
+namespace {
+
+// Exactly: intervals of weights, boxes, centre and places; and every point with all of its slack.
+template <class T> void check_packed(const MomentScene& scene)
+{
+    const RestExtent extent = rest_extent(scene.bvh, scene.e.surface);
+    const auto exactly = [](T x) { return Exact(static_cast<double>(x)); };
+    std::size_t rounded = 0;
+    for (std::size_t i = 0; i < scene.bvh.bvs.size(); ++i) {
+        const RestBv rest = scene.bvh.rest(i);
+        const RestMoments moments = scene.moments(i);
+        std::vector<double> means;
+        for (const WeightModel& model : rest.model)
+            means.push_back(model.mean);
+        PackedBv<T> bv;
+        bv.kind = Method::moments;
+        AlignedVector<T> value;
+        pack_moments<T>(rest, moments, means, extent, bv, value);
+        REQUIRE(bv.error_factor < infinite);
+        REQUIRE(value.size() == bv.values_before() + rest.node.size() * moment_values);
+        const T* head = value.data() + bv.values_before() - moment_head;
+        for (std::size_t c = 0; c < lifted_size; ++c)
+            for (std::size_t p = 0; p < moments.point.size(); ++p) {
+                const Exact packed = exactly(value[p * moment_point + moment_place[c]]),
+                            half = exactly(head[moment_head_slack + moment_place[c]]), point(moments.point[p][c]);
+                REQUIRE(packed - half <= point + Exact(moments.least[c]));
+                REQUIRE(point + Exact(moments.greatest[c]) <= packed + half);
+                rounded += packed != point;
+            }
+        for (std::size_t j = 0; j < rest.node.size(); ++j) {
+            const T* own = head + moment_head + j * moment_values;
+            REQUIRE(exactly(own[moment_l]) <= Exact(rest.space.l[j]));
+            REQUIRE(Exact(rest.space.h[j]) <= exactly(own[moment_l]) + exactly(own[moment_r]));
+            for (std::size_t s = 0; s < 3; ++s) {
+                const auto a = static_cast<int>(s);
+                REQUIRE(exactly(own[moment_z + s]) == Exact(moments.influence[j].place[a]));
+                REQUIRE(exactly(bv.pivot[s]) == Exact(moments.centre[a]) - Exact(extent.origin[a]));
+                const Exact centre = exactly(own[moment_box + s]) + Exact(extent.origin[a]),
+                            half = exactly(own[moment_box + 4 + s]), box(rest.local[j].centre[a]),
+                            own_half(rest.local[j].half[a]);
+                REQUIRE(centre - half <= box - own_half);
+                REQUIRE(box + own_half <= centre + half);
+            }
+        }
+    }
+    CHECK(rounded > 1000);
+}
+
+} // namespace
+
+TEST_CASE("what is packed for the moment bound holds what it is made of, exactly")
+{
+    MomentScene scene(600, 25, 2);
+    check_packed<float>(scene);
+    check_packed<double>(scene);
+    MomentScene far(scene);
+    for (Vec3& x : far.e.surface.mesh.vertices) // from the origin
+        x += Vec3(1e7, -3e5, 1 / 3.0);
+    far.bvh = build_bvh(far.e.surface, 2);
+    far.data = rest_moments(far.bvh, far.e.surface);
+    check_packed<float>(far);
 }

@@ -15,10 +15,11 @@ namespace cinch {
 namespace {
 
 constexpr int kdop = 6;
+constexpr double cubic = 1;
 
-// p → R (p + S p + Q(p, p)) in units of the surface, R a rotation, S and Q small and random; value and Jacobian at each
-// node.
-std::vector<AffineMap> synthetic_frame(std::span<const Vec3> node, const RestBox& box, double strength,
+// p → R (p + S p + Q(p, p) + C(p, p, p)) in units of the surface, R a rotation, S and Q small and random; value and
+// Jacobian at each node. Without C, which is a share of Q times lengths, moments would be exact.
+std::vector<AffineMap> synthetic_frame(std::span<const Vec3> node, const RestBox& box, double strength, double cubic,
                                        std::mt19937_64& random)
 {
     const double unit = box.half.maxCoeff() > 0 ? box.half.maxCoeff() : 1;
@@ -34,6 +35,10 @@ std::vector<AffineMap> synthetic_frame(std::span<const Vec3> node, const RestBox
     const double z = uniform(1), y = uniform(1), x = uniform(1), w = uniform(1); // arguments have no order
     Eigen::Quaterniond rotation(w, x, y, z);
     rotation.normalize();
+    Vec3 slope[3] = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+    for (Vec3& own : slope)
+        for (int i = 0; i < 3 && cubic > 0; ++i)
+            own[i] = uniform(cubic);
     const Eigen::Matrix3d r = rotation.toRotationMatrix();
     std::vector<AffineMap> maps;
     for (const Vec3& at : node) {
@@ -41,8 +46,9 @@ std::vector<AffineMap> synthetic_frame(std::span<const Vec3> node, const RestBox
         Vec3 value = p + strain * p;
         Eigen::Matrix3d jacobian = Eigen::Matrix3d::Identity() + strain;
         for (int i = 0; i < 3; ++i) {
-            value[i] += p.dot(quadratic[i] * p);
-            jacobian.row(i) += ((quadratic[i] + quadratic[i].transpose()) * p).transpose();
+            const double square = p.dot(quadratic[i] * p), more = 1 + slope[i].dot(p);
+            value[i] += more * square;
+            jacobian.row(i) += (more * (quadratic[i] + quadratic[i].transpose()) * p + square * slope[i]).transpose();
         }
         value = r * value * unit;
         jacobian = r * jacobian;
@@ -168,8 +174,8 @@ ChosenKinds choose_kinds(const Bvh& bvh, const DeformableSurface& surface, Metho
     const std::vector<Vec3> place = node_places(surface);
     std::vector<ProjectedMaps<double>> frames;
     for (const double strength : {0.3, 0.3, 0.9, 0.9})
-        project<double>(synthetic_frame(place, root, strength, random), rest_extent(bvh, surface), kdop,
-                        Rounding::proven, frames.emplace_back());
+        project<double>(synthetic_frame(place, root, strength, policy.most_moments > 0 ? cubic : 0, random),
+                        rest_extent(bvh, surface), kdop, Rounding::proven, frames.emplace_back());
 
     const bool leaves = bvh.detail == RestDetail::all;
     if (method == Method::moments || method == Method::best)
