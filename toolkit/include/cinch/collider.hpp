@@ -179,8 +179,9 @@ struct LeafPair {
 };
 
 /// The leaves of different bodies whose bounds over the step meet, sorted: the broad phase of continuous collision.
-/// Triangles that touch at any time of the step lie in one of the pairs. Throws std::invalid_argument for a k that is
-/// none, and for supports whose size is not that of the tree.
+/// Some are left out where those of BVs above them, which may be tighter, do not meet. Triangles that touch at any time
+/// of the step lie in one of the pairs. Throws std::invalid_argument for a k that is none, and for supports whose size
+/// is not that of the tree.
 std::vector<LeafPair> swept_leaf_pairs(std::span<const SweptBody> bodies, int kdop = 6);
 
 /// Bounds over a step in which every T_j moves from one end to the other linearly, (1 − τ) T_j(0) + τ T_j(1), as
