@@ -34,15 +34,6 @@ Vec3 median_image(std::span<const AffineMap> maps, const RestExtent& rest)
     return median;
 }
 
-// Of nodes 8i to 8i + 7 side by side.
-template <class T> void set_octets(std::size_t nodes, std::size_t record, ProjectedMaps<T>& out)
-{
-    out.octet.assign((nodes + 7) / 8 * 8 * record, T(0));
-    for (std::size_t j = 0; j < nodes; ++j)
-        for (std::size_t p = 0; p < record; ++p)
-            out.octet[(j / 8 * record + p) * 8 + j % 8] = out.value[j * record + p];
-}
-
 } // namespace
 
 Vec3 on_grid(const Vec3& image, const RestExtent& rest)
@@ -68,7 +59,7 @@ template <class T> void project(std::span<const AffineMap> maps, const RestExten
     out.unbounded = report.unbounded;
     out.vertex_error = report.vertex_error;
     if (octets == Octets::wanted)
-        set_octets(maps.size(), record, out);
+        to_octets<T>(out.value, record, out.octet);
     else
         out.octet.clear();
 }

@@ -14,6 +14,7 @@
 
 #include <hwy/highway.h>
 
+#include "toolkit/bounds/kernel/lanes-inl.hpp"
 #include "toolkit/bounds/kernel/next-inl.hpp"
 #include "toolkit/deform/kernel/quad-inl.hpp"
 
@@ -203,6 +204,40 @@ ProjectionReport project_double(std::span<const AffineMap> maps, const RestExten
     return project(maps, rest, axes, proven, origin, records);
 }
 
+// `records` of a whole octet.
+template <class T> void to_octet(const T* records, std::size_t length, T* octet)
+{
+    const T* record[block_lanes];
+    for (std::size_t i = 0; i < block_lanes; ++i)
+        record[i] = records + i * length;
+    for (std::size_t p = 0; p < length; p += 4) {
+        Lanes<T> row[4];
+        transpose(record, p, row);
+        for (std::size_t s = 0; s < 4; ++s)
+            row[s].store(octet + (p + s) * block_lanes);
+    }
+}
+
+template <class T> void to_octets(const T* records, std::size_t nodes, std::size_t length, T* octets)
+{
+    for (; nodes >= block_lanes; nodes -= block_lanes, records += block_lanes * length, octets += block_lanes * length)
+        to_octet(records, length, octets);
+    if (nodes == 0)
+        return;
+    T filled[block_lanes * 4 * projected_rows(13)];
+    std::fill_n(std::copy_n(records, nodes * length, filled), (block_lanes - nodes) * length, T(0));
+    to_octet(filled, length, octets);
+}
+
+void to_octets_float(const float* records, std::size_t nodes, std::size_t length, float* octets)
+{
+    to_octets(records, nodes, length, octets);
+}
+void to_octets_double(const double* records, std::size_t nodes, std::size_t length, double* octets)
+{
+    to_octets(records, nodes, length, octets);
+}
+
 } // namespace cinch::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -210,6 +245,8 @@ HWY_AFTER_NAMESPACE();
 namespace cinch {
 HWY_EXPORT(project_float);
 HWY_EXPORT(project_double);
+HWY_EXPORT(to_octets_float);
+HWY_EXPORT(to_octets_double);
 
 template <> ProjectionReport project_nodes(std::span<const AffineMap> maps, const RestExtent& rest,
                                            std::span<const Axis> axes, bool proven, const Vec3& origin, float* records)
@@ -221,6 +258,19 @@ template <> ProjectionReport project_nodes(std::span<const AffineMap> maps, cons
 {
     return HWY_DYNAMIC_DISPATCH(project_double)(maps, rest, axes, proven, origin, records);
 }
+
+template <class T> void to_octets(std::span<const T> records, std::size_t length, AlignedVector<T>& octets)
+{
+    const std::size_t nodes = records.size() / length;
+    octets.resize(blocks_of(nodes) * block_lanes * length);
+    if constexpr (sizeof(T) == 4)
+        HWY_DYNAMIC_DISPATCH(to_octets_float)(records.data(), nodes, length, octets.data());
+    else
+        HWY_DYNAMIC_DISPATCH(to_octets_double)(records.data(), nodes, length, octets.data());
+}
+
+template void to_octets(std::span<const float>, std::size_t, AlignedVector<float>&);
+template void to_octets(std::span<const double>, std::size_t, AlignedVector<double>&);
 
 } // namespace cinch
 #endif

@@ -20,4 +20,8 @@ template <class T> ProjectionReport project_nodes(std::span<const AffineMap> map
                                                   std::span<const Axis> axes, bool proven, const Vec3& origin,
                                                   T* records);
 
+/// Copies records of `length` values, a multiple of 4, of 8 simulation nodes after the other to octets
+/// (ProjectedMaps::octet); the last one is filled with 0.
+template <class T> void to_octets(std::span<const T> records, std::size_t length, AlignedVector<T>& octets);
+
 } // namespace cinch
