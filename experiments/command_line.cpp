@@ -235,6 +235,21 @@ void add_cost(CLI::App& app, Run& run)
         ->check(CLI::Range(1, 1000000))
         ->option_text("N");
     command
+        .add_option("--budget", o.anytime.budgets_ns,
+                    wrapped(fmt::format("bounds of the root that tighten for so many nanoseconds [{:g}]",
+                                        fmt::join(o.anytime.budgets_ns, ","))))
+        ->delimiter(',')
+        ->check(within(0, 1e12))
+        ->option_text("NS,...");
+    command
+        .add_option("--tolerance", o.anytime.tolerances,
+                    wrapped(fmt::format("bounds of the root that tighten until they are so near to a vertex, in widths "
+                                        "[{}]",
+                                        fmt::join(o.anytime.tolerances, ","))))
+        ->delimiter(',')
+        ->check(within(0, 1e6))
+        ->option_text("X,...");
+    command
         .add_option("--simulation", s.scene,
                     wrapped("of this scene instead: step size, integrator and energy against error and time"))
         ->option_text("SCENE");
@@ -250,6 +265,7 @@ void add_cost(CLI::App& app, Run& run)
   cinch cost                             the brain; about a minute
   cinch cost santa --kdops 6 --plot cost.svg
   cinch cost robot.glb --this-input-only --json > cost.jsonl
+  cinch cost --kdops 6 --budget 2e3,1e4,5e4 --this-input-only
   cinch cost --simulation twist-180      what accuracy costs in simulation
 
 Exit status: 0 measured, 2 bad usage or input, 130 interrupted (results so far

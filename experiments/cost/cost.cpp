@@ -39,12 +39,10 @@ Verdict pareto(const std::vector<CostRow>& rows, const CostRow& row)
     return all_of(all);
 }
 
-std::vector<CostRow> measure(const CostSample& sample, int kdop, double seconds)
+std::vector<CostRow> measure(const CostSample& sample, int kdop, double seconds,
+                             const std::vector<CostContestant>& runners)
 {
     const auto k = static_cast<std::size_t>(kdop);
-    std::vector<CostContestant> runners = scalar_contestants(sample, kdop);
-    for (CostContestant& kernel : kernel_contestants(sample, kdop))
-        runners.push_back(std::move(kernel));
     // The exact value of a method over the BV's own box is that of its rational form; of the others the support of the
     // vertices.
     std::vector<double> truth(sample.bvh.bvs.size() * k), vertices;
@@ -81,7 +79,7 @@ std::vector<CostRow> measure(const CostSample& sample, int kdop, double seconds)
                     c.guarantee,
                     c.proven,
                     times.of(i) / Range(static_cast<double>(sample.bvs.size())),
-                    times.ratio(i, plain),
+                    plain < runners.size() ? times.ratio(i, plain) : Range(NAN),
                     0,
                     NAN,
                     NAN,
@@ -119,6 +117,21 @@ std::vector<CostRow> measure(const CostSample& sample, int kdop, double seconds)
     return rows;
 }
 
+// Of a BV of each level, and of the root: the time goes to both in halves.
+std::vector<CostRow> measure(const CostSample& sample, int kdop, const CostOptions& options)
+{
+    std::vector<CostContestant> runners = scalar_contestants(sample, kdop);
+    for (CostContestant& kernel : kernel_contestants(sample, kdop))
+        runners.push_back(std::move(kernel));
+    std::vector<CostRow> rows = measure(sample, kdop, options.seconds / 2, runners);
+    const CostSample root{sample.surface, sample.bvh, sample.maps, {0}};
+    for (CostRow& row : measure(root, kdop, options.seconds / 2, anytime_contestants(root, kdop, options.anytime))) {
+        row.of_root = true;
+        rows.push_back(row);
+    }
+    return rows;
+}
+
 nlohmann::ordered_json plan_of(const CostOptions& options, const Input& input, const std::vector<std::string>& others)
 {
     return {{"input", input.name},
@@ -130,6 +143,8 @@ nlohmann::ordered_json plan_of(const CostOptions& options, const Input& input, c
             {"others", others},
             {"kdops", options.kdops},
             {"seconds", options.seconds},
+            {"budgets_ns", options.anytime.budgets_ns},
+            {"tolerances", options.anytime.tolerances},
             {"leaf", options.leaf}};
 }
 
@@ -165,7 +180,7 @@ int cost(const CostOptions& options)
             what.input = others[cell - 1];
             rows = rows_of(dual_gaps(or_leave([what] { return load_input(what); }), options.leaf));
         } else {
-            rows = rows_of(measure(sample, options.kdops[cell - inputs], options.seconds));
+            rows = rows_of(measure(sample, options.kdops[cell - inputs], options));
             rows.front()["bvs"] = sample.bvs.size();
         }
         return rows;

@@ -11,11 +11,18 @@
 
 namespace cinch {
 
+/// Where a bound of the root that tightens stops.
+struct AnytimeLimits {
+    std::vector<double> budgets_ns{5e3, 1e4, 2e4, 5e4, 1e5, 2e5, 5e5};
+    std::vector<double> tolerances{0.01, 0}; ///< of its width
+};
+
 struct CostOptions {
     InputOptions input;
     std::vector<int> kdops{cinch::kdops.begin(), cinch::kdops.end()};
-    double seconds = 2;     ///< of measuring per k
-    std::size_t leaf = 16;  ///< triangles
+    double seconds = 2;    ///< of measuring per k
+    std::size_t leaf = 16; ///< triangles
+    AnytimeLimits anytime;
     bool all_scenes = true; ///< the gap of the dual evaluation on every shipped shape, not on the input alone
     ShardOptions shards;
     OutputOptions output;
@@ -46,6 +53,8 @@ struct CostContestant {
 std::vector<CostContestant> scalar_contestants(const CostSample& sample, int kdop);
 /// All methods with kernels, in float and double, proven and not.
 std::vector<CostContestant> kernel_contestants(const CostSample& sample, int kdop);
+/// Of the root alone: one bound, ever tighter ones, and all vertices.
+std::vector<CostContestant> anytime_contestants(const CostSample& sample, int kdop, const AnytimeLimits& limits);
 
 /// How far D after so many passes lies above the optimum, in per cent of the bound's width: means over directions and
 /// frames.

@@ -31,7 +31,8 @@ Rows rows_of(const std::vector<CostRow>& rows)
                        {"worst_below", or_null(r.worst_below)},
                        {"pareto", static_cast<int>(r.pareto)},
                        {"cpu_share", r.load.cpu_share},
-                       {"load", r.load.load}});
+                       {"load", r.load.load},
+                       {"of_root", r.of_root}});
     return out;
 }
 
@@ -50,6 +51,7 @@ CostRow cost_row_of(const Json& row)
                 static_cast<Verdict>(row.at("pareto").get<int>()),
                 {}};
     out.load = {row.at("cpu_share"), row.at("load")};
+    out.of_root = row.at("of_root");
     return out;
 }
 

@@ -18,6 +18,7 @@ struct CostRow {
                                ///< NaN: none known
     Verdict pareto = Verdict::unknown; ///< inconclusive where it rests on times whose quartiles overlap
     Load load;
+    bool of_root = false; ///< of the root alone, from one bound to the true box
 };
 
 /// The rows of a cell, and back: those of a k-DOP, or the gaps of an input.

@@ -41,20 +41,26 @@ void print_tables(const Json& plan, std::size_t bvs, const std::vector<CostRow>&
     fmt::print("one BV of each of {} levels, last frame; one core{}\n", bvs, plan.at("mark").get<std::string>());
     for (std::size_t first = 0; first < rows.size();) {
         const int kdop = rows[first].kdop;
-        std::vector<std::vector<std::string>> lines;
+        std::vector<std::vector<std::string>> lines, of_root;
         for (; first < rows.size() && rows[first].kdop == kdop; ++first) {
             const CostRow& r = rows[first];
-            lines.push_back({r.method, r.arithmetic, grouped(static_cast<std::size_t>(r.ns.value + 0.5)),
-                             fmt::format("{:.2f}{}", r.ratio_to_double.value, mark(r.ratio_to_double)),
-                             fmt::format("{:.4f}", r.looseness),
-                             r.below > 0 ? fmt::format("{:.0f} %", 100 * r.below) : "0",
-                             r.worst_below > 0 ? fmt::format("{:.0e}", r.worst_below) : "-", r.guarantee,
-                             r.pareto == Verdict::holds   ? "*"
-                             : r.pareto == Verdict::fails ? ""
-                                                          : "?"});
+            const std::string ns = grouped(static_cast<std::size_t>(r.ns.value + 0.5)),
+                              opt = r.pareto == Verdict::holds   ? "*"
+                                    : r.pareto == Verdict::fails ? ""
+                                                                 : "?";
+            if (r.of_root)
+                of_root.push_back(
+                    {r.method, r.arithmetic, ns + mark(r.ns), fmt::format("{:.4f}", r.looseness), r.guarantee, opt});
+            else
+                lines.push_back({r.method, r.arithmetic, ns,
+                                 fmt::format("{:.2f}{}", r.ratio_to_double.value, mark(r.ratio_to_double)),
+                                 fmt::format("{:.4f}", r.looseness),
+                                 r.below > 0 ? fmt::format("{:.0f} %", 100 * r.below) : "0",
+                                 r.worst_below > 0 ? fmt::format("{:.0e}", r.worst_below) : "-", r.guarantee, opt});
         }
-        fmt::print("\n{}-DOP\n\n{}", kdop,
-                   table({"method", "arithmetic", "ns", "/ double", "ratio", "below", "worst", "proof", "opt"}, lines));
+        fmt::print("\n{}-DOP\n\n{}\nthe root alone, from one bound to the true box\n\n{}", kdop,
+                   table({"method", "arithmetic", "ns", "/ double", "ratio", "below", "worst", "proof", "opt"}, lines),
+                   table({"method", "until", "ns", "ratio", "proof", "opt"}, of_root));
     }
     fmt::print("\nns: per BV, all k directions. / double: over plain double of the same method.\n"
                "ratio: bound radius / true radius, mean. below, worst: how often, and by how much of\n"
@@ -62,7 +68,8 @@ void print_tables(const Json& plan, std::size_t bvs, const std::vector<CostRow>&
                "support, linear and best: below the vertices). proof: proven, exact, none, or\n"
                "the error to expect. opt: Pareto-optimal, nothing else is as fast, as tight and as\n"
                "well proven; ? where quartiles of times overlap. interval: directed rounding.\n"
-               "rational: the exact value, rounded up.\n{}\n\n"
+               "rational: the exact value, rounded up. anytime: branch and bound down the tree until so\n"
+               "much time is over, or the bound is so near to a vertex, in widths.\n{}\n\n"
                "how far the dual evaluation is from the optimum, per cent of the bound's width\n\n",
                describe(load));
     std::vector<std::vector<std::string>> lines;
@@ -78,7 +85,7 @@ void print_tables(const Json& plan, std::size_t bvs, const std::vector<CostRow>&
 Rows records_of(const Json& plan, const std::vector<CostRow>& rows, const std::vector<DualGap>& gaps, const Load& load)
 {
     Rows records;
-    for (const CostRow& r : rows)
+    for (const CostRow& r : rows) {
         records.push_back({{"experiment", "cost"},
                            {"input", plan.at("input")},
                            {"method", r.method},
@@ -87,10 +94,10 @@ Rows records_of(const Json& plan, const std::vector<CostRow>& rows, const std::v
                            {"ns_per_bound", r.ns.value},
                            {"ns_per_bound_low", r.ns.low},
                            {"ns_per_bound_high", r.ns.high},
-                           {"ratio_to_double", r.ratio_to_double.value},
-                           {"ratio_to_double_low", r.ratio_to_double.low},
-                           {"ratio_to_double_high", r.ratio_to_double.high},
-                           {"settled", r.ratio_to_double.is_settled()},
+                           {"ratio_to_double", or_null(r.ratio_to_double.value)},
+                           {"ratio_to_double_low", or_null(r.ratio_to_double.low)},
+                           {"ratio_to_double_high", or_null(r.ratio_to_double.high)},
+                           {"settled", (r.of_root ? r.ns : r.ratio_to_double).is_settled()},
                            {"cpu_share", load.cpu_share},
                            {"load", load.load},
                            {"mean_ratio", or_null(r.looseness)},
@@ -98,6 +105,9 @@ Rows records_of(const Json& plan, const std::vector<CostRow>& rows, const std::v
                            {"worst_below", or_null(r.worst_below)},
                            {"guarantee", r.guarantee},
                            {"pareto", r.pareto == Verdict::holds}});
+        if (r.of_root)
+            records.back()["level"] = 0;
+    }
     for (const DualGap& gap : gaps)
         for (int passes = 0; passes < 5; ++passes)
             records.push_back({{"experiment", "cost"},

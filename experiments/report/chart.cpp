@@ -57,7 +57,7 @@ template <class Take> void each_point(const Series& series, const Take& take)
 }
 
 // "set xtics (...)" of a logarithmic axis: gnuplot's own are at powers of ten alone, which may lie outside. The values
-// themselves where they are few; else 1, 2, 5 of each power, and more where there is one power or less.
+// themselves where they are few and whole; else 1, 2, 5 of each power, and more where there is one power or less.
 std::string log_tics(const char* axis, const Chart& chart, std::vector<double> Series::*values)
 {
     std::set<double> all;
@@ -70,7 +70,7 @@ std::string log_tics(const char* axis, const Chart& chart, std::vector<double> S
     std::string list;
     auto tic = [&](double at) { list += fmt::format("{}{:.6g}", list.empty() ? "" : ", ", at); };
     const bool is_x = *axis == 'x';
-    if (is_x && all.size() <= 10) {
+    if (is_x && all.size() <= 10 && std::all_of(all.begin(), all.end(), [](double x) { return x == std::round(x); })) {
         for (const double value : all)
             tic(value);
         return fmt::format("set {}tics ({})\n", axis, list);

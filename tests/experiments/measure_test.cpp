@@ -234,6 +234,38 @@ TEST_CASE("cinch cost: every arithmetic with its guarantee, exact where it says 
         CHECK(passes[p] > 0);
 }
 
+TEST_CASE("cinch cost: a bound of the root that tightens, from one bound to the true box")
+{
+    const test::Run run = test::cinch("cost santa --nodes 30 --frames 2 --leaf 20 --kdops 6,14 --seconds 0.01 "
+                                      "--budget 1,2e5 --tolerance 0.1,0 --this-input-only --json");
+    REQUIRE(run.status == 0);
+    std::map<std::pair<int, std::string>, double> ratio; // by k, and where it stops
+    bool any_pareto = false;
+    for (const json& r : records(run)) {
+        if (!r.contains("level"))
+            continue;
+        CHECK(r["level"] == 0);
+        CHECK(r["mean_ratio"] >= 1 - 1e-12);
+        if (r["method"] != "anytime")
+            continue;
+        CHECK(r["guarantee"] == "proven");
+        CHECK(r["below_exact"] == 0);
+        ratio[{r["kdop"], r["arithmetic"]}] = r["mean_ratio"];
+        any_pareto |= r["pareto"].get<bool>();
+    }
+    CHECK(any_pareto);
+    for (const int k : {6, 14}) {
+        CHECK(ratio[{k, "one bound"}] > 1.01);
+        CHECK(ratio[{k, "1 ns"}] <= ratio[{k, "one bound"}]);
+        CHECK(ratio[{k, "200,000 ns"}] < ratio[{k, "one bound"}]);
+        CHECK(ratio[{k, "within 10 %"}] < 1.1);
+        CHECK(ratio[{k, "true box"}] == Approx(1).epsilon(1e-9));
+    }
+    CHECK(ratio.size() == 10);
+    CHECK(test::cinch("cost santa --budget -5").status == 2);
+    CHECK(test::cinch("cost santa --tolerance x").status == 2);
+}
+
 TEST_CASE("the instruction set can be forced, and changes no bound")
 {
     std::set<std::string> outputs;

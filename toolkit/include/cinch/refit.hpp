@@ -4,6 +4,7 @@
 /// \file
 /// Bounds of every BV of a deforming surface, frame after frame.
 
+#include <chrono>
 #include <memory>
 #include <span>
 
@@ -69,6 +70,46 @@ private:
 /// A single frame: prepares everything anew.
 RefitReport refit(const Bvh& bvh, const DeformableSurface& surface, std::span<const AffineMap> maps,
                   const RefitOptions& options, std::span<double> supports);
+
+/// Bounds one BV ever tighter, for as long as there is time: branch and bound down the tree. At any moment each support
+/// is proven as those of a Refitter are; in the end it is what the method `vertices` says of the BV, or less. A step
+/// bounds two BVs or the vertices of one leaf, so only the few BVs that reach far out are ever looked at. Not
+/// thread-safe.
+class AnytimeBounder {
+public:
+    /// Prepares the rest data that the methods need. Throws std::invalid_argument for a k that is none. Surface and BVH
+    /// must stay as they are, and alive.
+    AnytimeBounder(const Bvh& bvh, const DeformableSurface& surface, const RefitOptions& options = {});
+    AnytimeBounder(const Bvh&&, const DeformableSurface&, const RefitOptions& = {}) = delete; ///< both are referred to
+    AnytimeBounder(const Bvh&, const DeformableSurface&&, const RefitOptions& = {}) = delete;
+    ~AnytimeBounder();
+    /// What was moved from can only be destroyed.
+    AnytimeBounder(AnytimeBounder&&) noexcept;
+
+    /// Begins a frame; `maps` must stay alive through it. Throws std::invalid_argument unless there is one transform
+    /// per simulation node, and std::runtime_error for a changed floating-point environment.
+    void begin(std::span<const AffineMap> maps);
+    /// Of this BV in the frame, by the methods alone. Throws std::out_of_range for one that the BVH does not have.
+    void begin(std::size_t bv);
+
+    /// One step where there is most to gain; no support grows. False, and nothing is done, where there is nothing left.
+    bool refine();
+    /// Steps until this time has passed, or nothing is left; the last one may take some microseconds more. The number
+    /// of steps.
+    std::size_t refine_for(std::chrono::nanoseconds budget);
+    /// Steps until each support is above what the vertices reach by at most `tolerance` ≥ 0 times the BV's width along
+    /// that axis, or nothing is left. The number of steps.
+    std::size_t refine_to(double tolerance);
+
+    std::span<const double> supports() const; ///< k, d as in axes_of(k); after begin(bv)
+    /// What the BV's vertices reach at least, by what steps have looked at; of single vertices as the method `vertices`
+    /// bounds them. −∞ where nothing is known.
+    std::span<const double> reached() const;
+
+private:
+    struct Parts;
+    std::unique_ptr<Parts> parts_;
+};
 
 /// How a crowd is bounded.
 struct CrowdOptions {
