@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """symbols_test.py NM LIBRARY HEADERS: what the shared library exports are the functions of its headers, with their
-version, and nothing else."""
+version, and nothing else; and the bits of methods stand in the order of C++'s table."""
 import pathlib
 import re
 import subprocess
@@ -18,4 +18,9 @@ named = {f"{name}@@{next(iter(version))}" for name in declared}
 found = {name for name, kind in exported.items() if kind != "A"}
 assert found == named, f"not exported: {named - found}; exported, and not declared: {found - named}"
 assert all(exported[name] == "T" for name in found)
-print(f"{len(found)} functions are exported, all of {next(iter(version))}")
+
+table = pathlib.Path(headers, "cinch", "bounds.hpp").read_text()
+names = re.findall(r'MethodInfo\{Method::(\w+), "\1",', table)
+bits = [(name, int(value)) for name, value in re.findall(r"CINCH_METHOD_(\w+) = (\d+)", text)]
+assert len(names) >= 11 and bits == [(name.upper(), 1 << i) for i, name in enumerate(names)], (names, bits)
+print(f"{len(found)} functions are exported, all of {next(iter(version))}; {len(bits)} methods")

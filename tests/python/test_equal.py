@@ -58,6 +58,25 @@ def test_weights_vertices_crowds_and_pairs_are_those_of_cpp():
     assert len(theirs) > 100 and np.array_equal(collider.pairs(), theirs)
 
 
+@pytest.mark.parametrize("kdop", cinch.kdops)
+def test_a_bound_that_tightens_goes_from_one_bound_to_the_true_box(kdop):
+    refit, _ = made(kdop=kdop)
+    maps = shapes.motion(12, 3)
+    first, truth = refit(maps), cinch.Refitter(refit.bvh, method="vertices", kdop=kdop)(maps)
+    bounder = cinch.AnytimeBounder(refit.bvh, kdop=kdop)
+    for bv in (0, 5, len(refit.bvh) - 1):
+        one, half, end = (bounder(maps, bv, **stop) for stop in ({"seconds": 0}, {"tolerance": 0.05}, {}))
+        if kdop == 6:  # boxes: the least corner is the less the looser
+            one, half, end, of_all = (x * [[-1], [1]] for x in (one, half, end, truth[:, bv]))
+            assert np.array_equal(one, first[:, bv] * [[-1], [1]])
+        else:
+            of_all = truth[:, bv]
+            assert np.array_equal(one, first[:, bv])
+        assert (end <= half).all() and (half <= one).all() and (end < one).any()
+        assert np.array_equal(end, np.minimum(of_all, one))
+    assert np.array_equal(bounder(maps[1]), bounder(maps)[1])
+
+
 def test_baked_bounds_are_those_of_the_program(program, data, tube, tmp_path):
     for options, more in ((["--kdop", "14"], {"kdop": 14}), (["--interval", "0.3"], {"interval": 0.3}),
                           (["--whole", "--method", "eq12"], {"whole": True, "method": "eq12"}),

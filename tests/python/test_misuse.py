@@ -183,6 +183,12 @@ def test_options():
         says("without some of its rest data", importlib.import_module("cinch.exact").Verifier, bvh)
     says("without the rest data", cinch.Refitter, bvh, method="sphere")
     says("without local boxes", cinch.CrowdRefitter, bvh)
+    bounder = cinch.AnytimeBounder(bvh, method="eq12")
+    rest = np.tile(np.eye(3, 4), (bvh.surface.node_count, 1, 1))
+    says("bv: there are", bounder, rest, len(bvh), error=IndexError)
+    says("tolerance: at least 0", bounder, rest, tolerance=float("nan"))
+    says("seconds: 0 to", bounder, rest, seconds=-1)
+    says("maps: an array of shape", bounder, rest[1:])
     says("not built over this surface", cinch.Refitter, bvh, made(), method="eq12")
     with pytest.raises(TypeError):
         cinch.build_bvh(made(), -1)

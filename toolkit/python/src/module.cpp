@@ -119,6 +119,7 @@ PYBIND11_MODULE(_core, module)
     add_files(module);
     add_bvh(module);
     add_refit(module);
+    add_anytime(module);
     add_time(module);
     add_collider(module);
     add_swept(module);

@@ -13,6 +13,7 @@ void add_character(pybind11::module_& module);
 void add_files(pybind11::module_& module);
 void add_bvh(pybind11::module_& module);
 void add_refit(pybind11::module_& module);
+void add_anytime(pybind11::module_& module);
 void add_time(pybind11::module_& module);
 void add_collider(pybind11::module_& module);
 void add_swept(pybind11::module_& module);
