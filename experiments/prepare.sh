@@ -10,6 +10,7 @@ test_packages=(chromium chromium-driver clang clang-format coq doxygen furo gapp
   libzarith-ocaml-dev munge mypy ocaml-findlib ocaml-nox pybind11-dev python3-dev python3-hypothesis
   python3-matplotlib python3-myst-parser python3-numpy python3-pip python3-pybind11 python3-pytest
   python3-setuptools python3-sphinx python3-wheel pkg-config slurm-client slurmctld slurmd)
+export CCACHE_BASEDIR=$source # what two build folders compile alike is compiled once
 configuration=() # further arguments of CMake's, for build
 
 # install_packages [NAME...]: those above, and these.
