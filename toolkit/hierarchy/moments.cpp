@@ -112,8 +112,8 @@ struct Frame {
                 std::isfinite(x[s]) ? std::clamp(x[s], centre[s] - 4 * half[s], centre[s] + 4 * half[s]) : centre[s];
         return out;
     }
-    // Of 24 bits about the rest origin. What is rounded here is off by less than 2^-28 of it, so that its difference
-    // from the origin is exact [Sterbenz 1974], as packing wants it.
+    // Of 24 bits about the rest origin. Where the sum is rounded, it lies within 2^-28 of the origin, in its units; so
+    // their difference is exact [Sterbenz 1974], as packing wants it.
     Vec3 near(const Vec3& mean) const
     {
         Vec3 out;
