@@ -64,13 +64,17 @@ template <class T, std::size_t kAxes> void intersect(const KernelInput<T>& in, c
 template <class T, std::size_t kAxes> void select_best(const PackedBv<T>& bv, const T* block, const T* b,
                                                        std::vector<std::pair<T, T>>& scratch, PerSide<T, kAxes>& lambda)
 {
+    scratch.resize(bv.count);
+    const std::size_t rows = PackedBv<T>::rows(bv.kind);
     for (std::size_t s = 0; s < 2; ++s)
         for (std::size_t a = 0; a < kAxes; ++a) {
-            scratch.clear();
-            for (std::size_t j = 0; j < bv.count; ++j) {
-                const std::size_t i = j / block_lanes, lane = j % block_lanes;
-                scratch.emplace_back(b[((i * kAxes + a) * 2 + s) * block_lanes + lane],
-                                     block[(i * PackedBv<T>::rows(bv.kind) + 1) * block_lanes + lane]);
+            const T* extremum = b + (2 * a + s) * block_lanes;
+            const T* range = block + block_lanes;
+            for (std::size_t j = 0; j < bv.count; j += block_lanes) {
+                for (std::size_t lane = 0; lane < std::min(block_lanes, bv.count - j); ++lane)
+                    scratch[j + lane] = {extremum[lane], range[lane]};
+                extremum += 2 * kAxes * block_lanes;
+                range += rows * block_lanes;
             }
             lambda[s][a] = best_lambda<T>(scratch, 1 - bv.sum_l);
         }
