@@ -4,6 +4,8 @@
 #include <cmath>
 #include <random>
 
+#include "toolkit/time/bound_over.hpp"
+
 namespace cinch {
 namespace {
 
@@ -174,6 +176,25 @@ TimeCase draw_time_case(std::uint64_t seed)
         add_targets(random, out.surface.mesh.vertices.size(), c);
     out.surface.weights = to_dyadic(influences);
     out.bvh = build_bvh(out.surface, 2);
+    return out;
+}
+
+std::vector<double> bounds_over_clip(const TimeCase& subject, const TimedMotion& motion, const RefitOptions& options,
+                                     CutInto by)
+{
+    IntervalRefitter refit(subject.bvh, subject.surface, options, subject.character.targets);
+    std::vector<double> out(subject.bvh.bvs.size() * static_cast<std::size_t>(options.kdop));
+    const double tolerance = by == CutInto::chosen ? 0.01 : 1e6;
+    if (by != CutInto::between_keys || motion.keys.size() < 2) {
+        bound_over(refit, motion, motion.first_s(), motion.last_s(), tolerance, out);
+        return out;
+    }
+    std::vector<double> own(out.size());
+    for (std::size_t i = 1; i < motion.keys.size(); ++i) {
+        bound_over(refit, motion, motion.keys[i - 1], motion.keys[i], tolerance, own);
+        for (std::size_t s = 0; s < out.size(); ++s)
+            out[s] = i == 1 ? own[s] : std::max(out[s], own[s]);
+    }
     return out;
 }
 

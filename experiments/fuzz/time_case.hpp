@@ -3,6 +3,7 @@
 
 #include "cinch/bvh.hpp"
 #include "cinch/io.hpp"
+#include "toolkit/time/motion_interval.hpp"
 
 namespace cinch {
 
@@ -14,5 +15,11 @@ struct TimeCase {
     Bvh bvh;
 };
 TimeCase draw_time_case(std::uint64_t seed);
+
+/// Bounds of a case for all times of its clip: as bound_over() does it, or loose on purpose, by as many intervals in a
+/// row as it tries, or by each between two keys.
+enum class CutInto { chosen, in_a_row, between_keys };
+std::vector<double> bounds_over_clip(const TimeCase& subject, const TimedMotion& motion, const RefitOptions& options,
+                                     CutInto by);
 
 } // namespace cinch

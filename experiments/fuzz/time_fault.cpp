@@ -10,7 +10,6 @@
 #include "experiments/fuzz/fuzz_case.hpp"
 #include "experiments/fuzz/time_case.hpp"
 #include "experiments/report/interrupt.hpp"
-#include "toolkit/time/bound_over.hpp"
 #include "toolkit/time/character_motion.hpp"
 
 namespace cinch {
@@ -51,10 +50,8 @@ std::string time_fault(const FuzzCase& problem, Defect defect)
         std::array{Methods(Method::best), Methods(Method::local), Methods(Method::limited)}[problem.trial % 3];
     options.kdop = problem.kdop;
     options.precision = problem.trial % 2 ? Precision::float64 : Precision::float32;
-    IntervalRefitter refit(drawn.bvh, drawn.surface, options, drawn.character.targets);
-    std::vector<double> supports(drawn.bvh.bvs.size() * static_cast<std::size_t>(options.kdop));
-    // Loose on purpose every other time, so that single intervals between keys are what is proven.
-    bound_over(refit, motion, motion.first_s(), motion.last_s(), problem.passes % 2 ? 1e6 : 0.01, supports);
+    const CutInto by = problem.passes ? CutInto::between_keys : problem.trial < 3 ? CutInto::chosen : CutInto::in_a_row;
+    const std::vector<double> supports = bounds_over_clip(drawn, motion, options, by);
     std::optional<exact::ClipEnclosure> clip;
     try {
         clip.emplace(read, read.rest, any_weights);

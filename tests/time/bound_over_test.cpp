@@ -29,11 +29,9 @@ std::size_t one_of(Random& random, std::size_t count)
 }
 
 exact::TimeVerdict verdict_on(const TimeCase& subject, const TimedMotion& motion, const RefitOptions& options,
-                              double tolerance)
+                              CutInto by)
 {
-    IntervalRefitter refit(subject.bvh, subject.surface, options, subject.character.targets);
-    std::vector<double> supports(subject.bvh.bvs.size() * static_cast<std::size_t>(options.kdop));
-    bound_over(refit, motion, motion.first_s(), motion.last_s(), tolerance, supports);
+    const std::vector<double> supports = bounds_over_clip(subject, motion, options, by);
     const exact::ClipEnclosure clip(subject.character, subject.character.rest);
     const exact::TimeChecker check(subject.surface, subject.bvh, clip, subject.character.targets, options.kdop, [] {});
     return check(motion.first_s(), motion.last_s(), supports);
@@ -72,12 +70,11 @@ TEST_CASE("bounds over time hold at all times, and whatever is dropped from them
         const RefitOptions options{.methods = i % 3 == 0 ? Method::local : Method::best,
                                    .kdop = kdops[i % kdops.size()],
                                    .precision = i % 2 ? Precision::float64 : Precision::float32};
-        // Loose on purpose now and then, so that single intervals between keys are what is checked.
-        const double tolerance = i % 2 ? 1e6 : 0.01;
+        const CutInto by = i % 4 == 1 ? CutInto::in_a_row : i % 2 ? CutInto::between_keys : CutInto::chosen;
         CAPTURE(i);
         exact::TimeVerdict verdict;
         try {
-            verdict = verdict_on(subject, motion, options, tolerance);
+            verdict = verdict_on(subject, motion, options, by);
         } catch (const InputError&) { // half a turn to the bit
             continue;
         }
@@ -108,7 +105,7 @@ TEST_CASE("bounds over time hold at all times, and whatever is dropped from them
                 }
                 return out;
             };
-            dropped[kind] += verdict_on(subject, wrong, options, 1e6).violated > 0;
+            dropped[kind] += verdict_on(subject, wrong, options, CutInto::between_keys).violated > 0;
         }
     }
     INFO(bounds << " bounds, " << undecided << " undecided, " << infinite_bounds << " infinite");
@@ -155,7 +152,8 @@ TEST_CASE("two keys nearly half a turn apart are decided")
 {
     const TimeCase subject = draw_time_case(6156331518490970231u);
     const TimedMotion motion = character_motion(subject.character, subject.character.rest, subject.surface);
-    const exact::TimeVerdict verdict = verdict_on(subject, motion, {.kdop = 14, .precision = Precision::float64}, 0.01);
+    const exact::TimeVerdict verdict =
+        verdict_on(subject, motion, {.kdop = 14, .precision = Precision::float64}, CutInto::chosen);
     CHECK(verdict.proven() == verdict.bounds);
 }
 

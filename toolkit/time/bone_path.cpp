@@ -141,14 +141,26 @@ TurnPath TurnPath::cubic(Polynomial<4> path, double d)
     return out;
 }
 
-std::array<Mat3, 3> TurnPath::at(double u) const
+Mat3 TurnPath::place_at(double u) const
 {
     if (kind_ == Kind::fixed)
-        return {first_, Mat3::Zero(), Mat3::Zero()};
+        return first_;
     if (kind_ == Kind::slerp) {
         const double half = rate_ * u / 2, s = std::sin(half), sine = 2 * s * std::cos(half); // 1 − cos = 2 sin²
         const Mat3 square = axis_ * axis_;
-        const Mat3 r = first_ * (Mat3::Identity() + sine * axis_ + 2 * s * s * square);
+        return first_ * (Mat3::Identity() + sine * axis_ + 2 * s * s * square);
+    }
+    const Quad q = path_.derivative(0, u);
+    const double n = dot(q, q);
+    return n > 0 ? Mat3(polar(q, q) / n) : Mat3::Identity();
+}
+
+std::array<Mat3, 3> TurnPath::at(double u) const
+{
+    const Mat3 r = place_at(u);
+    if (kind_ == Kind::fixed)
+        return {r, Mat3::Zero(), Mat3::Zero()};
+    if (kind_ == Kind::slerp) {
         const Mat3 first = rate_ * (r * axis_);
         return {r, first, rate_ * (first * axis_)};
     }
@@ -156,7 +168,6 @@ std::array<Mat3, 3> TurnPath::at(double u) const
     const double n = dot(q, q), n1 = 2 * dot(q, q1), n2 = 2 * (dot(q1, q1) + dot(q, q2));
     if (!(n > 0))
         return {Mat3::Identity(), Mat3::Zero(), Mat3::Zero()}; // over() is infinite
-    const Mat3 r = polar(q, q) / n;
     const Mat3 r1 = (2 * polar(q, q1) - n1 * r) / n;
     return {r, r1, (2 * (polar(q1, q1) + polar(q, q2)) - 2 * n1 * r1 - n2 * r) / n};
 }
@@ -221,14 +232,14 @@ TurnPath::Limits TurnPath::over(double a, double b) const
 BonePath::BonePath(const Bone& bone, const std::vector<const Curve*>& curves, double middle_s,
                    std::optional<double> end_s)
 {
-    p_.path.c = {bone.translation};
-    s_.path.c = {bone.scale};
+    p_.path.c = bone.translation;
+    s_.path.c = bone.scale;
     r_.path = TurnPath::fixed(bone.rotation);
     is_matrix_ = bone.is_matrix && curves.empty(); // else it was taken apart when the file was read
     if (is_matrix_) {
         const Eigen::Map<const Eigen::Matrix4d> m(bone.matrix.data());
         matrix_ = m.topLeftCorner<3, 3>();
-        p_.path.c = {{m(0, 3), m(1, 3), m(2, 3)}};
+        p_.path.c = std::array<double, 3>{m(0, 3), m(1, 3), m(2, 3)};
         matrix_magnitude_ = norm_of(matrix_);
         const double scale = matrix_magnitude_ < 0x1p-450 ? 0x1p600 : 1; // squares must not vanish
         const Mat3 scaled = scale * matrix_;
@@ -282,6 +293,15 @@ BonePath::Jet BonePath::at(double t_s) const
     out.m[2] += 2 * (r[1] * s[1].asDiagonal());
     out.m[2] += r[0] * s[2].asDiagonal();
     return out;
+}
+
+BonePath::Place BonePath::place_at(double t_s) const
+{
+    const Vec3 p(p_.path.derivative(0, t_s - p_.key_s).data());
+    if (is_matrix_)
+        return {matrix_, p};
+    const Vec3 s(s_.path.derivative(0, t_s - s_.key_s).data());
+    return {r_.path.place_at(t_s - r_.key_s) * s.asDiagonal(), p};
 }
 
 BonePath::Limits BonePath::over(double a_s, double b_s) const

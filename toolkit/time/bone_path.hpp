@@ -26,6 +26,7 @@ public:
 
     /// R, R′ and R″ at u.
     std::array<Mat3, 3> at(double u) const;
+    Mat3 place_at(double u) const; ///< R alone
 
     /// ρ_k ≥ sup ‖R^(k)‖₂ on [a, b], k = 0 to 3; +∞ where the path may pass near 0. And what the derivatives 0 to 2 of
     /// at() are rounded against.
@@ -66,6 +67,12 @@ public:
         std::array<Vec3, 3> p;
     };
     Jet at(double t_s) const;
+    /// Without derivatives, in the same bits.
+    struct Place {
+        Mat3 m;
+        Vec3 p;
+    };
+    Place place_at(double t_s) const;
 
     /// Suprema on [a, b] of the norms of derivatives 0 to 3 of p and M = RS, and what derivatives 0 to 2 of at() are
     /// rounded against.

@@ -15,19 +15,30 @@ constexpr int most_halvings = 20;
 constexpr std::size_t spare_intervals = 1000, intervals_per_piece = 8;
 // The share of the tolerance within which a bound needs no bend.
 constexpr double share_of_norms = 0.25;
+// Most intervals between keys that are first tried as one.
+constexpr std::size_t longest_span = 4;
 
 using Instant = std::shared_ptr<const InstantBounds>;
 
+// An interval without a key inside, or several in a row.
 struct Piece {
-    double first_s, last_s;
+    std::vector<double> cuts; // its ends, and the keys between
     int halvings = 0;
+    std::vector<std::shared_ptr<const MotionInterval>> inside; // between cuts; empty until it is bounded
     std::shared_ptr<const std::vector<std::uint32_t>> bvs;
     std::vector<bool> open;      // which of them the piece is there for; the others are below these
     std::vector<double> bound;   // their supports
     Instant first, last, middle; // of the same list
-};
 
-double middle_of(const Piece& piece) { return piece.first_s + (piece.last_s - piece.first_s) / 2; }
+    bool has_keys() const { return cuts.size() > 2; }
+    double first_s() const { return cuts.front(); }
+    double last_s() const { return cuts.back(); }
+    // A key where there is one.
+    double middle_s() const
+    {
+        return has_keys() ? cuts[(cuts.size() - 1) / 2] : first_s() + (last_s() - first_s()) / 2;
+    }
+};
 
 bool is_of(const Instant& instant, const std::vector<AffineMap>& maps, const std::vector<double>& weights)
 {
@@ -50,35 +61,33 @@ public:
         std::fill(supports.begin(), supports.end(), -std::numeric_limits<double>::infinity());
     }
 
-    // Bounds a piece; what of it exceeds its own ends, the times looked at so far.
+    // Bounds a piece; what of it exceeds the times looked at so far, its own ends among them.
     Piece bound(Piece piece)
     {
         const BvList bvs = *piece.bvs;
-        const MotionInterval motion = motion_.over(piece.first_s, piece.last_s);
+        for (std::size_t i = 1; piece.inside.size() + 1 < piece.cuts.size(); ++i)
+            piece.inside.push_back(over(piece.cuts[i - 1], piece.cuts[i]));
+        const MotionInterval &begin = *piece.inside.front(), &end = *piece.inside.back();
         // The last piece's end, where it is this one's beginning and of the same BVs.
-        const bool follows = last_bvs_ == piece.bvs && is_of(last_, motion.first, motion.morph.first);
-        if (!is_of(piece.first, motion.first, motion.morph.first))
-            piece.first = follows ? last_ : at(bvs, motion.first, motion.morph.first);
-        if (!is_of(piece.last, motion.last, motion.morph.last))
-            piece.last = is_of(piece.first, motion.last, motion.morph.last) ? piece.first
-                                                                            : at(bvs, motion.last, motion.morph.last);
+        const bool follows = last_bvs_ == piece.bvs && is_of(last_, begin.first, begin.morph.first);
+        if (!is_of(piece.first, begin.first, begin.morph.first))
+            piece.first = follows ? last_ : at(bvs, begin.first, begin.morph.first);
+        if (!is_of(piece.last, end.last, end.morph.last))
+            piece.last = is_of(piece.first, end.last, end.morph.last) ? piece.first : at(bvs, end.last, end.morph.last);
         last_ = piece.last;
         last_bvs_ = piece.bvs;
         piece.bound.resize(bvs.size() * k_);
-        refit_(bvs, motion, *piece.first, *piece.last, share_of_norms * tolerance_, piece.bound);
-        if (piece.first_s < piece.last_s)
+        if (piece.has_keys())
+            refit_(bvs, motion_span(piece.inside, refit_.bvh(), static_cast<int>(k_)), *piece.first, *piece.last,
+                   piece.bound);
+        else
+            refit_(bvs, begin, *piece.first, *piece.last, share_of_norms * tolerance_, piece.bound);
+        if (piece.first_s() < piece.last_s())
             bounded_ += static_cast<double>(bvs.size());
-        std::vector<double> ends(k_);
-        std::vector<bool> far(bvs.size());
-        for (std::size_t n = 0; n < bvs.size(); ++n) {
-            const std::size_t bv = bvs[n] * k_;
-            std::copy_n(&piece.first->supports[n * k_], k_, ends.begin());
-            take(ends, std::span(piece.last->supports).subspan(n * k_, k_));
-            take(std::span(instant_).subspan(bv, k_), ends);
-            if (piece.open[n] && !accept(piece, n, ends))
-                far[n] = true;
-        }
-        return part(piece, far);
+        for (std::size_t n = 0; n < bvs.size(); ++n)
+            for (const Instant& end : {piece.first, piece.last})
+                see(bvs[n], std::span(end->supports).subspan(n * k_, k_));
+        return left_of(piece);
     }
 
     // What of it exceeds all times looked at; takes the rest.
@@ -86,19 +95,22 @@ public:
     {
         std::vector<bool> far(piece.bvs->size());
         for (std::size_t n = 0; n < far.size(); ++n)
-            if (piece.open[n] && !accept(piece, n, std::span(instant_).subspan((*piece.bvs)[n] * k_, k_)))
+            if (piece.open[n] && !accept(piece, n))
                 far[n] = true;
         return part(piece, far);
     }
 
-    // Looks at a time in between.
-    void look(Piece& piece, double t_s)
+    // Looks at the time in the middle.
+    void look(Piece& piece)
     {
-        const MotionInterval motion = motion_.over(piece.first_s, t_s);
-        piece.middle = at(*piece.bvs, motion.last, motion.morph.last);
+        if (piece.has_keys()) {
+            piece.middle = at(*piece.bvs, piece.inside[(piece.cuts.size() - 1) / 2]->first, {});
+        } else {
+            const auto motion = over(piece.first_s(), piece.middle_s());
+            piece.middle = at(*piece.bvs, motion->last, motion->morph.last);
+        }
         for (std::size_t n = 0; n < piece.bvs->size(); ++n)
-            take(std::span(instant_).subspan((*piece.bvs)[n] * k_, k_),
-                 std::span(piece.middle->supports).subspan(n * k_, k_));
+            see((*piece.bvs)[n], std::span(piece.middle->supports).subspan(n * k_, k_));
     }
 
     void take_all(const Piece& piece)
@@ -112,21 +124,37 @@ public:
     double intervals() const { return bounded_ / static_cast<double>(std::max<std::size_t>(refit_.all().size(), 1)); }
 
 private:
+    void see(std::uint32_t bv, std::span<const double> supports)
+    {
+        take(std::span(instant_).subspan(bv * k_, k_), supports);
+    }
+
+    std::shared_ptr<const MotionInterval> over(double first_s, double last_s) const
+    {
+        return std::make_shared<const MotionInterval>(motion_.over(first_s, last_s));
+    }
+
     Instant at(BvList bvs, const std::vector<AffineMap>& maps, const std::vector<double>& weights)
     {
         return std::make_shared<const InstantBounds>(refit_.at(bvs, maps, weights));
     }
 
-    // Takes the n-th BV's bound if it is near enough to those at instants, or nothing beside what has been taken.
-    bool accept(const Piece& piece, std::size_t n, std::span<const double> instants)
+    // Takes the n-th BV's bound if with all that was taken it is near enough to those at instants.
+    bool accept(const Piece& piece, std::size_t n)
     {
+        const auto instants = std::span(instant_).subspan((*piece.bvs)[n] * k_, k_);
         const auto mine = std::span(piece.bound).subspan(n * k_, k_);
         const auto taken = supports_.subspan((*piece.bvs)[n] * k_, k_);
-        std::vector<double>& beside = scratch_;
-        beside.resize(k_);
-        for (std::size_t d = 0; d < k_; ++d)
-            beside[d] = mine[d] > taken[d] ? mine[d] : -std::numeric_limits<double>::infinity();
-        if (!is_near(beside, instants, tolerance_))
+        std::vector<double>& both = scratch_;
+        both.assign(mine.begin(), mine.end());
+        // All that was taken counts, unless that is far by itself, of pieces that could not be halved any more.
+        if (is_near(taken, instants, tolerance_))
+            take(both, taken);
+        else
+            for (std::size_t d = 0; d < k_; ++d)
+                if (mine[d] <= taken[d])
+                    both[d] = -std::numeric_limits<double>::infinity();
+        if (!is_near(both, instants, tolerance_))
             return false;
         take(taken, mine);
         return true;
@@ -135,7 +163,7 @@ private:
     // The same piece for these of its BVs, and all below them.
     Piece part(const Piece& piece, const std::vector<bool>& open)
     {
-        Piece out{piece.first_s, piece.last_s, piece.halvings, {}, {}, {}, {}, {}, {}};
+        Piece out{piece.cuts, piece.halvings, piece.inside, {}, {}, {}, {}, {}, {}};
         const std::vector<Bv>& tree = refit_.bvh().bvs;
         marked_.resize(tree.size());
         std::vector<std::uint32_t> bvs, place;
@@ -196,7 +224,7 @@ double bound_over(IntervalRefitter& refit, const TimedMotion& motion, double a_s
         throw std::invalid_argument("supports has " + std::to_string(supports.size()) + " entries; the BVs need " +
                                     std::to_string(all.size() * refit.kdop()));
     OverTime over(refit, motion, tolerance, supports);
-    // Pieces between keys; bounds of what is loose are kept until all their ends are known, as it depends on them.
+    // Pieces of keys; bounds of what is loose are kept until all their ends are known, as it depends on them.
     std::vector<double> cuts{a_s};
     for (const double key : motion.keys)
         if (key > a_s && key < b_s)
@@ -205,9 +233,22 @@ double bound_over(IntervalRefitter& refit, const TimedMotion& motion, double a_s
     cuts.push_back(b_s); // where a curve may jump to what no interval before it has
     const auto bvs = std::make_shared<const std::vector<std::uint32_t>>(all.begin(), all.end());
     std::vector<Piece> open;
-    for (std::size_t i = 1; i < cuts.size(); ++i)
-        open.push_back({cuts[i - 1], cuts[i], 0, bvs, std::vector<bool>(all.size(), true), {}, {}, {}, {}});
-    const std::size_t most_intervals = spare_intervals + intervals_per_piece * open.size();
+    for (std::size_t i = 1; i < cuts.size();) {
+        const bool alone = motion.weights || i + 1 == cuts.size();
+        const std::size_t end = alone ? i + 1 : std::min(i + longest_span, cuts.size() - 1);
+        open.push_back(
+            {{cuts.begin() + static_cast<std::ptrdiff_t>(i - 1), cuts.begin() + static_cast<std::ptrdiff_t>(end)},
+             0,
+             {},
+             bvs,
+             std::vector<bool>(all.size(), true),
+             {},
+             {},
+             {},
+             {}});
+        i = end;
+    }
+    const std::size_t most_intervals = spare_intervals + intervals_per_piece * cuts.size();
     std::size_t intervals = 0;
     while (!open.empty()) {
         std::vector<Piece> doubtful; // until all instants are known
@@ -224,8 +265,8 @@ double bound_over(IntervalRefitter& refit, const TimedMotion& motion, double a_s
             if (!far.bvs)
                 continue;
             if (far.halvings < most_halvings && intervals + 2 * seen.size() < most_intervals &&
-                middle_of(far) > far.first_s && middle_of(far) < far.last_s) {
-                over.look(far, middle_of(far));
+                far.middle_s() > far.first_s() && far.middle_s() < far.last_s()) {
+                over.look(far);
                 seen.push_back(std::move(far));
             } else {
                 over.take_all(far);
@@ -235,10 +276,22 @@ double bound_over(IntervalRefitter& refit, const TimedMotion& motion, double a_s
             const Piece far = over.left_of(piece);
             if (!far.bvs)
                 continue;
-            const double middle = middle_of(far);
-            const int halvings = far.halvings + 1;
-            open.push_back({far.first_s, middle, halvings, far.bvs, far.open, {}, far.first, far.middle, {}});
-            open.push_back({middle, far.last_s, halvings, far.bvs, far.open, {}, far.middle, far.last, {}});
+            Piece one{
+                {far.first_s(), far.middle_s()}, far.halvings, {}, far.bvs, far.open, {}, far.first, far.middle, {}},
+                other{
+                    {far.middle_s(), far.last_s()}, far.halvings, {}, far.bvs, far.open, {}, far.middle, far.last, {}};
+            if (far.has_keys()) {
+                const auto key = static_cast<std::ptrdiff_t>((far.cuts.size() - 1) / 2);
+                one.cuts.assign(far.cuts.begin(), far.cuts.begin() + key + 1);
+                other.cuts.assign(far.cuts.begin() + key, far.cuts.end());
+                one.inside.assign(far.inside.begin(), far.inside.begin() + key);
+                other.inside.assign(far.inside.begin() + key, far.inside.end());
+            } else {
+                ++one.halvings;
+                ++other.halvings;
+            }
+            open.push_back(std::move(one));
+            open.push_back(std::move(other));
         }
     }
     return over.intervals();

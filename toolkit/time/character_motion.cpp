@@ -44,12 +44,26 @@ World chained(const World& g, const BonePath::Jet& l)
     return out;
 }
 
-std::vector<World> world_at(const std::vector<Bone>& bones, const std::vector<BonePath>& paths, double t)
+std::vector<World> world_of(const std::vector<Bone>& bones, const std::vector<BonePath::Jet>& jets)
 {
     std::vector<World> world(bones.size());
     for (std::size_t i = 0; i < bones.size(); ++i) // parents come first
-        world[i] =
-            chained(bones[i].parent < 0 ? World() : world[static_cast<std::size_t>(bones[i].parent)], paths[i].at(t));
+        world[i] = chained(bones[i].parent < 0 ? World() : world[static_cast<std::size_t>(bones[i].parent)], jets[i]);
+    return world;
+}
+
+// Without derivatives.
+std::vector<BonePath::Place> place_at(const std::vector<Bone>& bones, const std::vector<BonePath>& paths, double t)
+{
+    std::vector<BonePath::Place> world(bones.size());
+    for (std::size_t i = 0; i < bones.size(); ++i) {
+        const BonePath::Place own = paths[i].place_at(t);
+        world[i] = own;
+        if (bones[i].parent < 0)
+            continue;
+        const BonePath::Place& above = world[static_cast<std::size_t>(bones[i].parent)];
+        world[i] = {above.m * own.m, above.m * own.p + above.p};
+    }
     return world;
 }
 
@@ -64,11 +78,11 @@ Mat3 linear(const AffineMap& map)
 
 Vec3 shift(const AffineMap& map) { return {map.m[0][3], map.m[1][3], map.m[2][3]}; }
 
-// The k-th derivative of G B.
-AffineMap joint_map(const World& g, std::size_t k, const AffineMap& bind)
+// G B.
+AffineMap joint_map(const Mat3& of_bone, const Vec3& place, const AffineMap& bind)
 {
-    const Mat3 m = g.m[k] * linear(bind);
-    const Vec3 p = g.m[k] * shift(bind) + g.p[k];
+    const Mat3 m = of_bone * linear(bind);
+    const Vec3 p = of_bone * shift(bind) + place;
     AffineMap out;
     for (int r = 0; r < 3; ++r) {
         for (int c = 0; c < 3; ++c)
@@ -118,7 +132,9 @@ public:
     MotionInterval over(double a_s, double b_s) const;
 
 private:
-    std::vector<BonePath> paths(double middle_s, std::optional<double> end_s = {}) const;
+    std::vector<BonePath> paths(double middle_s) const;
+    std::vector<BonePath> paths_at_end(std::vector<BonePath> paths, double middle_s, double end_s) const;
+    std::vector<const Curve*> curves(std::size_t bone) const;
 
     std::string file_, name_;
     std::vector<Bone> bones_;
@@ -134,26 +150,38 @@ private:
     std::vector<std::vector<std::pair<std::uint32_t, double>>> farthest_;
 };
 
-std::vector<BonePath> CharacterMotion::paths(double middle_s, std::optional<double> end_s) const
+std::vector<const Curve*> CharacterMotion::curves(std::size_t bone) const
+{
+    std::vector<const Curve*> out;
+    for (const std::size_t c : curves_of_[bone])
+        out.push_back(&curves_[c]);
+    return out;
+}
+
+std::vector<BonePath> CharacterMotion::paths(double middle_s) const
 {
     std::vector<BonePath> out;
     out.reserve(bones_.size());
-    for (std::size_t b = 0; b < bones_.size(); ++b) {
-        std::vector<const Curve*> curves;
-        for (const std::size_t c : curves_of_[b])
-            curves.push_back(&curves_[c]);
-        out.emplace_back(bones_[b], curves, middle_s, end_s);
-    }
+    for (std::size_t b = 0; b < bones_.size(); ++b)
+        out.emplace_back(bones_[b], curves(b), middle_s, std::nullopt);
     return out;
+}
+
+std::vector<BonePath> CharacterMotion::paths_at_end(std::vector<BonePath> paths, double middle_s, double end_s) const
+{
+    for (std::size_t b = 0; b < bones_.size(); ++b)
+        if (!curves_of_[b].empty())
+            paths[b] = BonePath(bones_[b], curves(b), middle_s, end_s);
+    return paths;
 }
 
 std::vector<AffineMap> CharacterMotion::at(double t_s) const
 {
-    const std::vector<World> world = world_at(bones_, paths(t_s), t_s);
+    const std::vector<BonePath::Place> world = place_at(bones_, paths(t_s), t_s);
     std::vector<AffineMap> out;
     out.reserve(joints_.size());
     for (const Joint& joint : joints_) {
-        out.push_back(joint_map(world[joint.bone], 0, joint.inverse_bind));
+        out.push_back(joint_map(world[joint.bone].m, world[joint.bone].p, joint.inverse_bind));
         if (!is_finite(out.back()))
             throw InputError::in_file(file_, "clip '" + name_ + "' at " + std::to_string(t_s) +
                                                  " s: the matrix of joint " + std::to_string(out.size() - 1) +
@@ -166,14 +194,15 @@ MotionInterval CharacterMotion::over(double a_s, double b_s) const
 {
     const double middle_s = a_s + (b_s - a_s) / 2, length = (b_s - a_s) * wider;
     const std::vector<BonePath> path = paths(middle_s);
-    const std::vector<World> first = world_at(bones_, path, a_s), last = world_at(bones_, paths(middle_s, b_s), b_s),
-                             middle = world_at(bones_, path, middle_s);
+    const std::vector<BonePath::Place> first = place_at(bones_, path, a_s),
+                                       last = place_at(bones_, paths_at_end(path, middle_s, b_s), b_s);
     std::vector<BonePath::Limits> limits;
     std::vector<BonePath::Jet> jets;
     for (const BonePath& bone : path) {
         limits.push_back(bone.over(a_s, b_s));
         jets.push_back(bone.at(middle_s));
     }
+    const std::vector<World> middle = world_of(bones_, jets);
     static constexpr double choose[4][4] = {{1}, {1, 1}, {1, 2, 1}, {1, 3, 3, 1}};
     auto times = [](double x, double y) { return x == 0 || y == 0 ? 0 : x * y; };
 
@@ -190,10 +219,10 @@ MotionInterval CharacterMotion::over(double a_s, double b_s) const
     const double bend = -(b_s - a_s) * (b_s - a_s) / 8;
     for (std::size_t j = 0; j < joints_.size(); ++j) {
         const Joint& joint = joints_[j];
-        out.first.push_back(joint_map(first[joint.bone], 0, joint.inverse_bind));
-        out.last.push_back(joint_map(last[joint.bone], 0, joint.inverse_bind));
+        out.first.push_back(joint_map(first[joint.bone].m, first[joint.bone].p, joint.inverse_bind));
+        out.last.push_back(joint_map(last[joint.bone].m, last[joint.bone].p, joint.inverse_bind));
         auto middle_map = [&](std::size_t k, double factor) {
-            AffineMap map = joint_map(middle[joint.bone], k, joint.inverse_bind);
+            AffineMap map = joint_map(middle[joint.bone].m[k], middle[joint.bone].p[k], joint.inverse_bind);
             for (auto& row : map.m)
                 for (double& x : row)
                     x *= factor;

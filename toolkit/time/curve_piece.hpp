@@ -39,13 +39,13 @@ polynomial_of(std::span<const double> time_s, Curve::Interpolation interpolation
     const bool cubic = interpolation == Curve::Interpolation::cubic_spline;
     const std::size_t k = piece.key;
     const std::array<double, N> v0 = value(cubic ? 3 * k + 1 : k);
-    Polynomial<N> path{{v0}};
+    Polynomial<N> path{v0};
     if (piece.constant)
         return path;
     const double d = time_s[k + 1] - time_s[k];
     if (!cubic) {
         const std::array<double, N> v1 = value(k + 1);
-        path.c.emplace_back();
+        path.c.resize(2);
         for (std::size_t n = 0; n < N; ++n)
             path.c[1][n] = (v1[n] - v0[n]) / d;
         return path;

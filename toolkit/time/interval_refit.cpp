@@ -118,13 +118,54 @@ InstantBounds IntervalRefitter::at(BvList bvs, std::vector<AffineMap> maps, std:
     return out;
 }
 
+// Evaluation of a vertex of n influences rounds by (n + 8)u of what an interval's `error`, at least 2⁻⁴² of it, stands
+// for. So do displacements by (m + n + 16)u of four times it, m the targets; see MorphBoxes.
+double IntervalRefitter::evaluation(std::uint32_t bv, bool morphs) const
+{
+    const Bv& of = bvh_.bvs[bv];
+    return 1 + of.vertex_influences / 256.0 +
+           (morphs ? static_cast<double>(morphs_.count(bv) + of.influence_count) / 256 : 0);
+}
+
+void IntervalRefitter::require(BvList bvs, const InstantBounds& first, const InstantBounds& last,
+                               std::span<double> supports) const
+{
+    if (supports.size() != bvs.size() * kdop() || first.supports.size() != supports.size() ||
+        last.supports.size() != supports.size())
+        throw std::invalid_argument("an interval needs " + std::to_string(kdop()) + " supports per BV");
+}
+
+void IntervalRefitter::operator()(BvList bvs, const MotionSpan& motion, const InstantBounds& first,
+                                  const InstantBounds& last, std::span<double> supports)
+{
+    const std::size_t k = kdop();
+    require(bvs, first, last, supports);
+    for (std::size_t n = 0; n < bvs.size(); ++n) {
+        const RestBv bv = bvh_.rest(bvs[n]);
+        double error = 0;
+        for (const std::uint32_t j : bv.node)
+            error = std::max(error, motion.error[j]);
+        error *= evaluation(bvs[n], false);
+        for (std::size_t d = 0; d < k; ++d) {
+            const std::size_t at = n * k + d;
+            const double wider = d < 6 ? error : succ(norm_[d / 2] * error);
+            auto mean = [&](const std::vector<double>& of) {
+                return greatest_mean(bv, [&](std::size_t j) { return of[bv.node[j] * k + d]; });
+            };
+            supports[at] =
+                succ(greatest_between(succ(first.supports[at] + wider), succ(last.supports[at] + wider),
+                                      mean(motion.rise), infinite) + // where a curve jumps no path is long enough
+                     mean(motion.bump));
+        }
+    }
+    merge_children(bvs, supports);
+}
+
 void IntervalRefitter::operator()(BvList bvs, const MotionInterval& motion, const InstantBounds& first,
                                   const InstantBounds& last, double enough, std::span<double> supports)
 {
     const std::size_t k = kdop();
-    if (supports.size() != bvs.size() * k || first.supports.size() != supports.size() ||
-        last.supports.size() != supports.size())
-        throw std::invalid_argument("an interval needs " + std::to_string(k) + " supports per BV");
+    require(bvs, first, last, supports);
     // The bound of the n-th BV, of its bump along axis a.
     auto bound = [&](std::size_t n, const MotionInterval::Limits& most, auto&& bump) {
         for (std::size_t d = 0; d < k; ++d) {
@@ -164,12 +205,7 @@ void IntervalRefitter::operator()(BvList bvs, const MotionInterval& motion, cons
             most.error = std::max(most.error, of.error);
             most.bend_error = std::max(most.bend_error, of.bend_error);
         }
-        // Evaluation of a vertex of n influences rounds by (n + 8)u of what `error`, at least 2⁻⁴² of it, stands for.
-        // So do displacements by (m + n + 16)u of four times it, m the targets; see MorphBoxes.
-        const Bv& bv = bvh_.bvs[bvs[n]];
-        const double evaluation =
-            1 + bv.vertex_influences / 256.0 +
-            (motion.morph.empty() ? 0 : static_cast<double>(morphs_.count(bvs[n]) + bv.influence_count) / 256);
+        const double evaluation = this->evaluation(bvs[n], !motion.morph.empty());
         most.error *= evaluation;
         most.bend_error *= evaluation;
         if (is_settled(n, most.bump)) {

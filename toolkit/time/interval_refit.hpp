@@ -4,6 +4,7 @@
 #include "toolkit/hierarchy/bounder.hpp"
 #include "toolkit/hierarchy/morph_boxes.hpp"
 #include "toolkit/time/motion_interval.hpp"
+#include "toolkit/time/motion_span.hpp"
 
 namespace cinch {
 
@@ -43,6 +44,10 @@ public:
     void operator()(BvList bvs, const MotionInterval& motion, const InstantBounds& first, const InstantBounds& last,
                     double enough, std::span<double> supports);
 
+    /// The same over intervals in a row, from the bounds at both ends of all: no refit in between, no bend.
+    void operator()(BvList bvs, const MotionSpan& motion, const InstantBounds& first, const InstantBounds& last,
+                    std::span<double> supports);
+
     BvList all() const { return all_; } ///< BVs of the tree
     std::size_t kdop() const { return static_cast<std::size_t>(kdop_); }
     const Bvh& bvh() const { return bvh_; }
@@ -50,6 +55,8 @@ public:
 private:
     void refit(BvList bvs, std::span<const AffineMap> maps, std::span<double> supports);
     void merge_children(BvList bvs, std::span<double> supports);
+    double evaluation(std::uint32_t bv, bool morphs) const;
+    void require(BvList bvs, const InstantBounds& first, const InstantBounds& last, std::span<double> supports) const;
 
     const Bvh& bvh_;
     int kdop_;

@@ -5,15 +5,32 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <vector>
 
 #include "toolkit/time/norm.hpp"
 
 namespace cinch {
 
+/// Coefficients of a polynomial of degree 7 at most, the square of a cubic one and less, in place.
+template <std::size_t N> class Coefficients {
+public:
+    explicit Coefficients(std::size_t size) : size_(size) {}
+    Coefficients(const std::array<double, N>& constant) : all_{constant}, size_(1) {}
+
+    std::size_t size() const { return size_; }
+    void resize(std::size_t size) { size_ = size; } ///< what is new is 0
+    std::array<double, N>& operator[](std::size_t i) { return all_[i]; }
+    const std::array<double, N>& operator[](std::size_t i) const { return all_[i]; }
+    const std::array<double, N>* begin() const { return all_.data(); }
+    const std::array<double, N>* end() const { return all_.data() + size_; }
+
+private:
+    std::array<std::array<double, N>, 8> all_{};
+    std::size_t size_;
+};
+
 /// A path p(u) = Σ_i c_i u^i in N dimensions.
 template <std::size_t N> struct Polynomial {
-    std::vector<std::array<double, N>> c; ///< never empty
+    Coefficients<N> c{1}; ///< never empty
 
     std::size_t degree() const { return c.size() - 1; }
 
@@ -40,7 +57,7 @@ template <std::size_t N> struct Polynomial {
     /// p(a + (b − a) w) as a path of w in [0, 1].
     Polynomial over(double a, double b) const
     {
-        Polynomial out{std::vector<std::array<double, N>>(c.size())};
+        Polynomial out{Coefficients<N>(c.size())};
         double scale = 1;
         for (std::size_t k = 0; k < c.size(); ++k) {
             const auto d = derivative(k, a);
@@ -54,7 +71,7 @@ template <std::size_t N> struct Polynomial {
     /// d/dw.
     Polynomial slope() const
     {
-        Polynomial out{std::vector<std::array<double, N>>(std::max<std::size_t>(degree(), 1))};
+        Polynomial out{Coefficients<N>(std::max<std::size_t>(degree(), 1))};
         for (std::size_t i = 1; i < c.size(); ++i)
             for (std::size_t n = 0; n < N; ++n)
                 out.c[i - 1][n] = static_cast<double>(i) * c[i][n];
@@ -62,9 +79,9 @@ template <std::size_t N> struct Polynomial {
     }
 
     /// Bernstein's coefficients on [0, 1], whose convex hull the path stays in: β_i = Σ_j≤i C(i, j)/C(n, j) c_j.
-    std::vector<std::array<double, N>> control() const
+    Coefficients<N> control() const
     {
-        std::vector<std::array<double, N>> out(c.size());
+        Coefficients<N> out(c.size());
         for (std::size_t i = 0; i < c.size(); ++i) {
             double share = 1; // C(i, j)/C(n, j)
             for (std::size_t j = 0; j <= i; ++j) {
@@ -101,7 +118,7 @@ private:
 template <std::size_t M, std::size_t N, class F>
 Polynomial<M> product(const Polynomial<N>& x, const Polynomial<N>& y, F&& of)
 {
-    Polynomial<M> out{std::vector<std::array<double, M>>(x.degree() + y.degree() + 1)};
+    Polynomial<M> out{Coefficients<M>(x.degree() + y.degree() + 1)};
     for (std::size_t i = 0; i < x.c.size(); ++i)
         for (std::size_t j = 0; j < y.c.size(); ++j) {
             const std::array<double, M> term = of(x.c[i], y.c[j]);

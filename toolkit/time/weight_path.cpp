@@ -8,7 +8,7 @@ WeightPath::WeightPath(const std::vector<double>& still, const std::vector<Weigh
 {
     path_.reserve(still.size());
     for (const double weight : still)
-        path_.push_back({0, 0, Polynomial<1>{{{weight}}}});
+        path_.push_back({0, 0, Polynomial<1>{std::array<double, 1>{weight}}});
     for (const WeightCurve& curve : curves) {
         const CurvePiece piece =
             piece_of(curve.time_s, curve.interpolation,
