@@ -263,6 +263,12 @@ Curve four_of(const WeightCurve& curve, std::size_t first)
 
 } // namespace
 
+MapEnclosure bone_enclosure(const Bone& bone)
+{
+    const DirectedRounding rounding;
+    return enclosure_of(local(bone, state_of(bone), false).value);
+}
+
 struct ClipEnclosure::Parts {
     std::vector<Bone> bones;
     std::vector<Joint> joints;

@@ -9,6 +9,9 @@
 
 namespace cinch::exact {
 
+/// Of a bone's transform to its parent, as the file has it.
+MapEnclosure bone_enclosure(const Bone& bone);
+
 /// A character's clip as the glTF 2.0 specification defines it from the stored numbers, in real arithmetic: T_j(t) and
 /// T_j′(t), enclosed by intervals with directed rounding; the angles between keys are MPFI's. Shares no formula with
 /// the toolkit: spherical interpolation is that of the specification, sin((1 − s)φ) q₀ + sin(sφ) q₁ over sin φ of unit

@@ -10,7 +10,7 @@
 namespace cinch::exact {
 namespace {
 
-constexpr std::string_view format = "cinch times 1";
+constexpr std::string_view format = "cinch times 2";
 
 std::string hash_of_method(const Claim& claim, std::span<const double> any_weights)
 {
@@ -73,7 +73,7 @@ struct TimeCertificateWriter::Parts {
     bool hashes = false; // lines are motion
 
     void begin_clip(const std::string& name, double first_s, double last_s, std::size_t curves, std::size_t morphs,
-                    std::size_t frames, std::size_t count)
+                    std::size_t frames, std::size_t limits, std::size_t count)
     {
         if (clips_done == clips || interval != intervals || count == 0)
             throw std::invalid_argument("TimeCertificateWriter::clip: not what is claimed");
@@ -83,7 +83,8 @@ struct TimeCertificateWriter::Parts {
         hashes = true;
         line.raw("{\"clip\":").text(name).raw(",\"first\":").number(first_s).raw(",\"last\":").number(last_s);
         line.raw(",\"curves\":").integer(curves).raw(",\"morphs\":").integer(morphs);
-        line.raw(",\"frames\":").integer(frames).raw(",\"intervals\":").integer(count).raw("}").end();
+        line.raw(",\"frames\":").integer(frames).raw(",\"limits\":").integer(limits);
+        line.raw(",\"intervals\":").integer(count).raw("}").end();
     }
     void keys(Curve::Interpolation interpolation, std::span<const double> times)
     {
@@ -146,7 +147,7 @@ void TimeCertificateWriter::clip(const Character::Animation& animation, double f
                                  std::size_t intervals)
 {
     Parts& p = *parts_;
-    p.begin_clip(animation.name, first_s, last_s, animation.curves.size(), animation.morphs.size(), 0, intervals);
+    p.begin_clip(animation.name, first_s, last_s, animation.curves.size(), animation.morphs.size(), 0, 0, intervals);
     for (std::size_t i = 0; i < animation.curves.size(); ++i) {
         const Curve& curve = animation.curves[i];
         p.line.raw("{\"curve\":").integer(i).raw(",\"bone\":").integer(curve.bone);
@@ -169,11 +170,22 @@ void TimeCertificateWriter::clip(const Character::Animation& animation, double f
 void TimeCertificateWriter::clip(const Clip& frames, double first_s, double last_s, std::size_t intervals)
 {
     Parts& p = *parts_;
-    p.begin_clip(frames.name, first_s, last_s, 0, 0, frames.frame_count(), intervals);
+    p.begin_clip(frames.name, first_s, last_s, 0, 0, frames.frame_count(), 0, intervals);
     for (std::size_t i = 0; i < frames.frame_count(); ++i) {
         const Clip::Frame maps = frames.frame(i);
         p.line.raw("{\"frame\":").integer(i).raw(",\"time\":").number(frames.time_s(i)).raw(",\"maps\":");
         p.line.array(maps, [&](const AffineMap& map) { p.line.numbers({&map.m[0][0], 12}); }).raw("}").end();
+    }
+    p.hashes = false;
+}
+
+void TimeCertificateWriter::poses(const std::string& name, std::span<const PoseLimit> limits, double time_s)
+{
+    Parts& p = *parts_;
+    p.begin_clip(name, time_s, time_s, 0, 0, 0, limits.size(), 1);
+    for (std::size_t i = 0; i < limits.size(); ++i) {
+        p.line.raw("{\"limit\":").integer(i).raw(",\"angle\":").number(limits[i].angle);
+        p.line.raw(",\"move\":").number(limits[i].move).raw("}").end();
     }
     p.hashes = false;
 }

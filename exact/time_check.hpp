@@ -5,15 +5,16 @@
 #include <optional>
 #include <string>
 
-#include "cinch/bvh.hpp"
+#include "exact/displacements.hpp"
 #include "exact/motion_enclosure.hpp"
+#include "exact/vertex_bvs.hpp"
 
 namespace cinch::exact {
 
 /// A vertex outside of a bound at some time.
 struct Outside {
     std::size_t bv = 0, direction = 0, vertex = 0;
-    double time_s = 0;   ///< exactly this double
+    double time_s = 0;   ///< exactly this double; NaN where it is in a pose
     double bound = 0;    ///< the support
     double at_least = 0; ///< what the vertex reaches along the direction, rounded down
 };
@@ -45,13 +46,11 @@ public:
 
 private:
     const DeformableSurface& surface_;
-    const Bvh& bvh_;
     const MotionEnclosure& clip_;
     int kdop_;
     std::function<void()> poll_;
-    std::vector<std::uint32_t> vertices_;                                ///< of any triangle
-    std::vector<std::uint32_t> row_, bv_;                                ///< the BVs that contain each of them
-    std::vector<std::vector<std::pair<std::uint32_t, Vec3>>> displaced_; ///< by targets, every vertex; empty: by none
+    VertexBvs vertices_;
+    Displacements displaced_;
 };
 
 } // namespace cinch::exact

@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exact/vertex_enclosure.hpp"
 
-#include "exact/number.hpp"
+#include "exact/along.hpp"
 #include "exact/rest_data.hpp"
 
 namespace cinch::exact {
 namespace {
 
-Interval entry_of(const Enclosure& x) { return {x.low, x.high}; }
-
 Interval square_of_distance(const std::array<Enclosure, 3>& place, const Vec3& centre)
 {
     Interval sum(0);
     for (int r = 0; r < 3; ++r)
-        sum += CGAL::square(entry_of(place[static_cast<std::size_t>(r)]) - Interval(centre[r]));
+        sum += CGAL::square(interval_of(place[static_cast<std::size_t>(r)]) - Interval(centre[r]));
     return sum;
 }
 
@@ -34,24 +32,10 @@ std::array<Enclosure, 3> InstantEnclosure::place(std::uint32_t vertex) const
 {
     const DirectedRounding rounding;
     const Vec3& rest = surface_.mesh.vertices[vertex];
-    Interval y[3] = {Interval(rest[0]), Interval(rest[1]), Interval(rest[2])},
-             x[3] = {Interval(0), Interval(0), Interval(0)};
-    for (const Displacements::One& d : displacements_.of(vertex))
-        for (int c = 0; c < 3; ++c)
-            y[c] += entry_of(weights_[d.target]) * Interval(d.by[c]);
-    const Weights::Row row = surface_.weights.of(vertex);
-    for (std::size_t i = 0; i < row.node.size(); ++i)
-        for (int r = 0; r < 3; ++r) {
-            const auto& m = maps_[row.node[i]].m[r];
-            Interval image = entry_of(m[3]);
-            for (int c = 0; c < 3; ++c)
-                image += entry_of(m[c]) * y[c];
-            x[r] += Interval(row.weight[i]) * image;
-        }
-    std::array<Enclosure, 3> out;
-    for (std::size_t r = 0; r < 3; ++r)
-        out[r] = {x[r].inf(), x[r].sup()};
-    return out;
+    Place y{Interval(rest[0]), Interval(rest[1]), Interval(rest[2])}, x{Interval(0), Interval(0), Interval(0)};
+    add_displacement(displacements_.of(vertex), weights_, y);
+    add_place(surface_.weights.of(vertex), y, maps_, true, x);
+    return {Enclosure{x[0].inf(), x[0].sup()}, {x[1].inf(), x[1].sup()}, {x[2].inf(), x[2].sup()}};
 }
 
 bool is_outside(const std::array<Enclosure, 3>& place, const Vec3& centre, double radius)

@@ -101,7 +101,7 @@ Examples:
   cinch bake robot.glb --certificate robot.jsonl.gz
   cinch bake robot.glb --engine float32 --joint-error 1e-5 --nlerp
   cinch bake face.vrm --morphs any           for weights that a program sets
-  cinch bake robot.glb --poses limits.json   for poses that a program sets
+  cinch bake robot.glb --poses limits.json --prove   for what a program sets
   cinch bake robot.glb --report              how tight, and what frames miss
   cinch bake robot.glb --prove --out proof   clip by clip, and on after a Ctrl-C
 

@@ -86,7 +86,7 @@ std::string words_of(const BakedFigures& f)
         100 * f.missed_keys, 100 * f.missed_by_us);
 }
 
-void print_clip(const BakedClip& clip)
+void print_clip(const BakedClip& clip, std::string_view of)
 {
     fmt::print("{}, {:.6g} to {:.6g} s:\n", clip.name, clip.first_s, clip.last_s);
     for (const BakedInterval& interval : clip.intervals) {
@@ -95,7 +95,7 @@ void print_clip(const BakedClip& clip)
         fmt::print("  {:8.4f} to {:8.4f} s  {} to {}\n", interval.first_s, interval.last_s, of_box(low), of_box(high));
     }
     if (clip.verdict)
-        fmt::print("  {}\n{}", verdict_line(*clip.verdict), clip.worst);
+        fmt::print("  {}\n{}", verdict_line(*clip.verdict, of), clip.worst);
     if (clip.figures)
         fmt::print("{}", words_of(*clip.figures));
 }
@@ -113,6 +113,7 @@ void print_bake(const Merged& all, const OutputOptions& options, const Provenanc
 {
     const Json& plan = all.campaign.plan;
     const bool words = !options.records_only();
+    const std::string_view of = plan.at("statement") == statement_of_poses ? "poses" : "times";
     RecordOutput output(options, from);
     output.set(completeness);
     if (words)
@@ -133,7 +134,7 @@ void print_bake(const Merged& all, const OutputOptions& options, const Provenanc
                 for (std::size_t bv = 0; bv < body.written; ++bv)
                     output.add(record_of(body, plan, clip.name, interval, bv));
             if (words)
-                print_clip(clip);
+                print_clip(clip, of);
             if (clip.figures) {
                 output.add(record_of(body, clip.name, *clip.figures));
                 figures.push_back(*clip.figures);
@@ -156,7 +157,7 @@ void print_bake(const Merged& all, const OutputOptions& options, const Provenanc
     }
     output.finish();
     if (words && plan.at("prove"))
-        fmt::print("{}\n", verdict_line(verdict_of_clips(all)));
+        fmt::print("{}\n", verdict_line(verdict_of_clips(all), of));
 }
 
 // A body made ready, with which its clips are baked one by one.
@@ -258,8 +259,8 @@ void refuse_what_does_not_go_together(const BakeOptions& options, std::size_t bo
     const bool files = !options.npz.empty() || !options.usd.empty();
     if (bodies > 1 && (files || !options.certificate.empty()))
         throw InputError("--npz, --usd and --certificate hold one body; --body chooses it");
-    if (!options.input.poses.empty() && (options.prove || options.report || !options.certificate.empty()))
-        throw InputError("--prove, --report and --certificate are of clips; not with --poses");
+    if (!options.input.poses.empty() && options.report)
+        throw InputError("--report is of clips; not with --poses");
     if (!options.shards.folder.empty() && !options.certificate.empty())
         throw InputError("--certificate is written in one run, without --out");
     if (!options.shards.shard.empty() && files)

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/bake/prove.hpp"
 
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "exact/clip_enclosure.hpp"
+#include "exact/pose_check.hpp"
 #include "experiments/report/interrupt.hpp"
 #include "experiments/report/number.hpp"
 
@@ -23,6 +26,12 @@ std::optional<exact::Enclosure> limits_of(const TimedBody& body)
 exact::TimeVerdict prove(const TimedBody& body, const TimedClip& clip, const Bvh& bvh, int kdop,
                          std::span<const BakedInterval> intervals)
 {
+    if (!body.poses.empty()) {
+        const Character& character = body.any_weights ? *body.any_weights->character : *body.character;
+        const exact::PoseChecker check(body.input.surface, bvh, character, body.poses, limits_of(body), kdop,
+                                       throw_if_interrupted);
+        return check(intervals.front().supports);
+    }
     std::unique_ptr<exact::MotionEnclosure> enclosure;
     std::span<const MorphTarget> targets = body.targets();
     if (body.any_weights) {
@@ -54,7 +63,9 @@ TimeProofFile::TimeProofFile(const std::string& name, const TimedBody& body, con
 void TimeProofFile::add(const TimedClip& clip, std::span<const BakedInterval> intervals)
 {
     const double first_s = clip.motion.first_s(), last_s = clip.motion.last_s();
-    if (clip.animation)
+    if (!body_.poses.empty())
+        writer_.poses(clip.motion.name, body_.poses, first_s);
+    else if (clip.animation)
         writer_.clip(*clip.animation, first_s, last_s, intervals.size());
     else
         writer_.clip(body_.input.clip, first_s, last_s, intervals.size());
@@ -68,9 +79,9 @@ void TimeProofFile::commit(const exact::TimeVerdict& verdict)
     file_.commit();
 }
 
-std::string verdict_line(const exact::TimeVerdict& verdict)
+std::string verdict_line(const exact::TimeVerdict& verdict, std::string_view of)
 {
-    return fmt::format("{} bounds for all times, {} proven, {} violated{}", grouped(verdict.bounds),
+    return fmt::format("{} bounds for all {}, {} proven, {} violated{}", grouped(verdict.bounds), of,
                        grouped(verdict.proven()), grouped(verdict.violated),
                        verdict.undecided ? ", " + grouped(verdict.undecided) + " undecided" : "");
 }
@@ -80,7 +91,9 @@ std::string worst_line(const exact::TimeVerdict& verdict)
     if (!verdict.worst)
         return "";
     const exact::Outside& worst = *verdict.worst;
-    return fmt::format("  vertex {} at {:.17g} s is {:.3g} beyond direction {} of BV {}\n", worst.vertex, worst.time_s,
+    const std::string when =
+        std::isnan(worst.time_s) ? "in a pose within the limits" : fmt::format("at {:.17g} s", worst.time_s);
+    return fmt::format("  vertex {} {} is {:.3g} beyond direction {} of BV {}\n", worst.vertex, when,
                        worst.at_least - worst.bound, worst.direction, worst.bv);
 }
 

@@ -28,8 +28,9 @@ private:
     exact::TimeCertificateWriter writer_;
 };
 
-/// "N bounds for all times, P proven, V violated", with what is undecided; and where the worst vertex is.
-std::string verdict_line(const exact::TimeVerdict& verdict);
+/// "N bounds for all times, P proven, V violated", with what is undecided; and where the worst vertex is. `of`: times
+/// or poses.
+std::string verdict_line(const exact::TimeVerdict& verdict, std::string_view of = "times");
 std::string worst_line(const exact::TimeVerdict& verdict);
 
 } // namespace cinch

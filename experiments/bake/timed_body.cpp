@@ -86,14 +86,16 @@ std::vector<TimedBody> load_timed(const InputOptions& options, const Engine& eng
     Character& character = *loaded;
     body.character = loaded;
     body.input = load_character_surface(what, character);
-    if (!what.morphs.empty())
-        free_weights(body, character, what, engine);
     if (!what.poses.empty()) {
         if (!what.clip.empty() || !engine.exact())
             throw InputError("--poses stands for clips; not with --clip, --engine, --nlerp and --joint-error");
-        const std::vector<PoseLimit> limits = read_poses(what.poses, character);
+        body.poses = read_poses(what.poses, character);
+    }
+    if (!what.morphs.empty())
+        free_weights(body, character, what, engine);
+    if (!what.poses.empty()) {
         body.input.report.push_back(fmt::format("every pose within the limits of {}", what.poses));
-        body.clips.push_back({poses_within(character, limits, body.input.surface), nullptr});
+        body.clips.push_back({poses_within(character, body.poses, body.input.surface), nullptr});
         return bodies;
     }
     std::vector<const Character::Animation*> wanted;
@@ -133,7 +135,7 @@ std::uint64_t checksum_of(const TimedBody& body, std::uint64_t sum)
     for (const TimedClip& clip : body.clips) {
         take(clip.motion.name);
         take(clip.motion.keys);
-        if (clip.motion.name == "poses" && !clip.animation && body.character) // of limits that stand in no curve
+        if (!body.poses.empty()) // they stand in no curve
             for (const MotionInterval::Limits& limit : clip.motion.over(0, 0).limits)
                 sum = checksum({reinterpret_cast<const char*>(&limit.error), sizeof limit.error}, sum);
         if (!clip.animation)

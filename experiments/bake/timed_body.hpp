@@ -8,6 +8,7 @@
 #include "experiments/bake/bake.hpp"
 #include "experiments/input.hpp"
 #include "toolkit/time/motion_interval.hpp"
+#include "toolkit/time/pose_limits.hpp"
 
 namespace cinch {
 
@@ -28,6 +29,7 @@ struct TimedBody {
     Input input;
     std::shared_ptr<const Character> character; ///< none for others
     std::optional<AnyWeights> any_weights;      ///< `character` is with_any_weights of its own then
+    std::vector<PoseLimit> poses;               ///< of the bones, where poses stand for clips; else none
     std::vector<TimedClip> clips;
 
     std::span<const MorphTarget> targets() const

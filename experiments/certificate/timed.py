@@ -5,12 +5,13 @@ import json
 
 from certificate.motion import Bone, Character, Frames
 from certificate.path import Curve
+from certificate.poses import PoseProof
 from certificate.records import Header, check_end, partial
 from certificate.surface import Surface, Target
 from certificate.times import IntervalProof, Vertices
 from certificate.values import Rejected, double, in_order, listed, plain, require, shown, text, whole
 
-FORMAT = "cinch times 1"
+FORMAT = "cinch times 2"
 HEADER = {"certificate", "method", "kdop", "vertices", "triangles", "nodes", "bvs", "bones", "targets", "weights",
           "clips", "partial", "missing", "sha256"}
 INTERPOLATIONS = ("STEP", "LINEAR", "CUBICSPLINE")
@@ -65,7 +66,7 @@ class TimedChecker:
         used = sorted({v for triangle in self.surface.triangles for v in triangle})
         self.vertices = Vertices(self.surface, used, self.targets)
         self.proven = self.infinite = self.intervals = 0
-        self.clips = []
+        self.clips, self.poses = [], False
         for i in range(header.clips):
             self.check_clip(i)
         check_end(records, header, "clips", {"proven": self.proven, "infinite": self.infinite},
@@ -138,10 +139,10 @@ class TimedChecker:
 
     def check_clip(self, number):
         record = self.motion.expect(f"clip {number}",
-                                    {"clip", "first", "last", "curves", "morphs", "frames", "intervals"})
+                                    {"clip", "first", "last", "curves", "morphs", "frames", "limits", "intervals"})
         name, first, last = text(record["clip"], "clip"), double(record["first"]), double(record["last"])
         require(first <= last, "clip {} ends before it begins", shown(name))
-        counts = {what: whole(record[what], 0, MOST, what) for what in ("curves", "morphs", "frames", "intervals")}
+        counts = {what: whole(record[what], 0, MOST, what) for what in ("curves", "morphs", "frames", "limits", "intervals")}
         if self.character:
             require(not counts["frames"], "frames of a character")
             curves, moved = {}, set()
@@ -156,12 +157,24 @@ class TimedChecker:
                 "keys of clip {} lie outside of it", shown(name))
         self.clips.append((name, motion))
         proof = IntervalProof(self.vertices, self.surface, motion, self.header.axes)
+        if counts["limits"]:
+            require(self.character and counts["limits"] == self.header.bones, "limits are not one per bone")
+            require(not motion.keys and first == last and counts["intervals"] == 1, "poses that are a clip")
+            self.poses = True
+            proof = PoseProof(proof, self.character, [self.limit(i) for i in range(counts["limits"])])
         require(counts["intervals"], "clip {} has no intervals", shown(name))
         reached = first
         for i in range(counts["intervals"]):
             self.progress(f"{plain(name)}, interval {i + 1} of {counts['intervals']}")
             reached = self.check_interval(i, reached, proof)
         require(reached == last, "the intervals of clip {} end before it does", shown(name))
+
+    def limit(self, i):
+        record = self.motion.expect(f"limit {i}", {"limit", "angle", "move"})
+        in_order("limit", record["limit"], i)
+        limit = double(record["angle"]), double(record["move"])
+        require(min(limit) >= 0, "a limit below 0")
+        return limit
 
     def check_interval(self, i, begin, proof):
         record = self.records.expect(f"interval {i}", {"interval", "first", "last"})
@@ -187,6 +200,7 @@ class TimedChecker:
 
     def verdict(self):
         limits = self.header.any_weights
-        return (f"{partial(self.header)}{self.proven} bounds over {self.intervals} intervals of time proven, "
+        over = "every pose within limits" if self.poses else f"{self.intervals} intervals of time"
+        return (f"{partial(self.header)}{self.proven} bounds over {over} proven, "
                 f"{self.infinite} infinite" +
                 (f", of morph targets with weights from {limits[0]:g} to {limits[1]:g}" if limits else ""))

@@ -231,11 +231,17 @@ def changes(records):
         yield "weights of a target", weight
     for i in places("displacements"):
         def by(r, i=i): r[i]["displacements"] = [[moved(x, 9 * size) for x in d] for d in r[i]["displacements"]]
-        if records[i]["vertices"]:
+        used = not places("limit") or float.fromhex(records[i]["weight"])  # a pose has the weights of the file
+        if records[i]["vertices"] and used:
             yield "displacements", by
     for i in places("bind"):
         def bind(r, i=i): r[i]["bind"][7] = moved(r[i]["bind"][7], 9 * size)
         yield "a bind", bind
+    if places("limit"):
+        bone = records[places("bind")[0]]["bone"]
+        def limit(r): r[places("limit")[bone]]["move"] = moved(r[places("limit")[bone]]["move"], 9 * size)
+        def below(r): r[places("limit")[bone]]["angle"] = (-0.1).hex()
+        yield from (("a limit", limit), ("a limit below 0", below))
     for i in places("parent"):
         def parent(r, i=i): r[i]["parent"] = r[i]["bone"]
         yield "a bone above itself", parent
@@ -298,6 +304,16 @@ def limits():
         assert Fraction(floor_units(x, 200), 1 << 200) <= Fraction(x) < Fraction(floor_units(x, 200) + 1, 1 << 200)
 
 
+def poses(folder, name, proof):
+    """Every pose within limits: nothing wider, and nothing nearer, is proven."""
+    file = os.path.join(folder, "limits.json")
+    with open(file, "w") as out:
+        json.dump({"bones": {}, "others": {"degrees": 10, "move": 0.01}}, out)
+    made = run("bake", name, "--leaf", "4", "--poses", file, "--certificate", proof)
+    assert made.returncode == 0, made.stderr
+    return mutated(folder, proof)
+
+
 def any_weights(folder, name, proof):
     """Morph targets with any weights of a range: no wider range is proven by the same bounds, nor nearer bounds."""
     for limits in ("any", "-0.5..1.5"):
@@ -343,6 +359,7 @@ with tempfile.TemporaryDirectory() as folder:
             wrong = subprocess.run([sys.executable, checker, proof], capture_output=True, text=True)
             assert wrong.returncode == 1 and "beyond the bound" in wrong.stdout, (kind, wrong.stdout, wrong.stderr)
     any_weights(folder, face(folder), proof)
+    count += poses(folder, face(folder), proof)
     run("verify", name, "--times", "all", "--certificate", proof)
     assert reason(folder, read(proof)) is None
     for name, kdop in ((spin(folder), "14"), (wave(folder), "6"), (breath(folder), "6")):

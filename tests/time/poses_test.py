@@ -7,6 +7,7 @@ sys.path.append(str(pathlib.Path(__file__).resolve().parent))
 from made_characters import crowd, face
 from sampled_character import Character
 
+checker = pathlib.Path(__file__).resolve().parents[2] / "experiments" / "check_certificate.py"
 program, shared = sys.argv[1], sys.argv[2] if len(sys.argv) > 2 else ""
 chance = random.Random(7)
 
@@ -62,6 +63,24 @@ def baked(name, limits, folder, *options, status=0):
     return rows[0]
 
 
+def proven(name, limits, folder, *options):
+    """By the program's exact side and by the checker of its certificate; damaged bounds by neither."""
+    file, certificate = os.path.join(folder, "limits.json"), os.path.join(folder, "poses.jsonl.gz")
+    with open(file, "w") as out:
+        json.dump(limits, out)
+    for damage, status in ([], 0), (["--sabotage", "no-remainder"], 1):
+        words = [program, "bake", name, "--poses", file, "--prove", "--certificate", certificate, *map(str, options)]
+        run = subprocess.run([*words, *damage], capture_output=True, text=True)
+        said = run.stdout.splitlines()[-1]
+        assert run.returncode == status and "bounds for all poses" in said, (name, limits, run)
+        assert (", 0 violated" in said and "undecided" not in said) == (not damage), said
+        assert not damage or "in a pose within the limits is" in run.stdout, run.stdout
+        checked = subprocess.run([sys.executable, checker, certificate], capture_output=True, text=True)
+        assert checked.returncode == status, (name, limits, options, damage, checked)
+        assert ("every pose within limits proven" if not damage else "in every pose") in checked.stdout, checked.stdout
+    print("%s: %s" % (os.path.basename(name), said))
+
+
 def outside(name, limits, box, poses):
     """How far of their size samples leave the box, and how much of it they fill."""
     character, worst = Character(name), -math.inf
@@ -104,8 +123,14 @@ with tempfile.TemporaryDirectory() as folder:
                             ('{"other": {}}', "other"), ('{"others": {"degrees": 3, "mov": 1}}', "mov")):
             said = baked(made, wrong, folder, status=2)
             assert what in said and said.count("\n") == 1, (wrong, said)
-        for option in (["--prove"], ["--certificate", folder + "/c"], ["--report"], ["--clip", "x"]):
+        for option in (["--report"], ["--clip", "x"]):
             baked(made, {"bones": {}}, folder, *option, status=2)
+        for k, options in enumerate(([], ["--kdop", 14, "--precision", "double"], ["--morphs", "-0.5..1"])):
+            if "--morphs" in options and made != face(folder):
+                continue
+            proven(made, {"bones": {}, "others": {"degrees": 5 + 60 * k, "move": 0.1 * k}}, folder, *options)
+        if not any("matrix" in node for node in character.nodes):
+            proven(made, some, folder)
     bad = baked(face(folder), '{"bones": {"%s": {"axis": [0, 0, 0], "degrees": [0, 1]}}}' % names[1], folder, status=2)
     assert "axis" in bad, bad
 if shared and os.path.isdir(shared):

@@ -170,7 +170,7 @@ let line hashes value =
     let get names make = make (fields names members) in
     let wrong () = assert false in
     if has "certificate" then
-      if List.assoc "certificate" members = Text "cinch times 1" then refuse "not of this checker: bounds over time"
+      if List.assoc "certificate" members = Text "cinch times 2" then refuse "not of this checker: bounds over time"
       else if has "targets" then refuse "not of this checker: morph targets"
       else header hashes members
     else if has "vertex" then

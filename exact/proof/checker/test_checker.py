@@ -182,7 +182,7 @@ class CheckerTest(unittest.TestCase):
             self.assert_accepted(sealed(records), "infinite")
 
     def test_what_is_of_others_is_refused_by_name(self):
-        for header, what in (('{"certificate": "cinch times 1"}', "bounds over time"),
+        for header, what in (('{"certificate": "cinch times 2"}', "bounds over time"),
                              ('{"certificate": "cinch 2", "targets": 1}', "morph targets")):
             status, line = by_cinch_check(written(self.folder.name, [header]))
             self.assertEqual(status, REJECTED)
