@@ -36,8 +36,8 @@ namespace cinch::exact {
 /// a_i(t) weights of targets, or any within the limits that the header has, Σ w_j T_j(t) (rest + Σ a_i(t) d_i) lies
 /// within the bounds at all real times of the closed interval. Where there are limits, the one interval is an instant,
 /// and the statement is of every pose in which each bone's transform to its parent, x ↦ t + M x without curves, is some
-/// x ↦ t' + E M x, |t' − t| ≤ move, E a rotation by at most `angle`. The hash of motion is over bones, joints, targets and
-/// every clip, in that order, as written.
+/// x ↦ t' + E M x, |t' − t| ≤ move, E a rotation by at most `angle`. The hash of motion is over bones, joints, targets
+/// and every clip, in that order, as written.
 class TimeCertificateWriter {
 public:
     /// `character`: none of clips that are frames. `any_weights`: of all morph targets at all times, instead of what
