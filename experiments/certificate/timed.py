@@ -142,7 +142,8 @@ class TimedChecker:
                                     {"clip", "first", "last", "curves", "morphs", "frames", "limits", "intervals"})
         name, first, last = text(record["clip"], "clip"), double(record["first"]), double(record["last"])
         require(first <= last, "clip {} ends before it begins", shown(name))
-        counts = {what: whole(record[what], 0, MOST, what) for what in ("curves", "morphs", "frames", "limits", "intervals")}
+        counts = {what: whole(record[what], 0, MOST, what)
+                  for what in ("curves", "morphs", "frames", "limits", "intervals")}
         if self.character:
             require(not counts["frames"], "frames of a character")
             curves, moved = {}, set()

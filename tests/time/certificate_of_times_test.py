@@ -231,17 +231,14 @@ def changes(records):
         yield "weights of a target", weight
     for i in places("displacements"):
         def by(r, i=i): r[i]["displacements"] = [[moved(x, 9 * size) for x in d] for d in r[i]["displacements"]]
-        used = not places("limit") or float.fromhex(records[i]["weight"])  # a pose has the weights of the file
-        if records[i]["vertices"] and used:
+        if records[i]["vertices"] and (not places("limit") or float.fromhex(records[i]["weight"])):
             yield "displacements", by
     for i in places("bind"):
         def bind(r, i=i): r[i]["bind"][7] = moved(r[i]["bind"][7], 9 * size)
         yield "a bind", bind
     if places("limit"):
-        bone = records[places("bind")[0]]["bone"]
-        def limit(r): r[places("limit")[bone]]["move"] = moved(r[places("limit")[bone]]["move"], 9 * size)
-        def below(r): r[places("limit")[bone]]["angle"] = (-0.1).hex()
-        yield from (("a limit", limit), ("a limit below 0", below))
+        limit = places("limit")[records[places("bind")[0]]["bone"]]
+        yield "a limit", lambda r: r[limit].update(move=moved(r[limit]["move"], 9 * size))
     for i in places("parent"):
         def parent(r, i=i): r[i]["parent"] = r[i]["bone"]
         yield "a bone above itself", parent
@@ -306,11 +303,9 @@ def limits():
 
 def poses(folder, name, proof):
     """Every pose within limits: nothing wider, and nothing nearer, is proven."""
-    file = os.path.join(folder, "limits.json")
-    with open(file, "w") as out:
-        json.dump({"bones": {}, "others": {"degrees": 10, "move": 0.01}}, out)
-    made = run("bake", name, "--leaf", "4", "--poses", file, "--certificate", proof)
-    assert made.returncode == 0, made.stderr
+    with open(os.path.join(folder, "limits.json"), "w") as out:
+        out.write('{"bones": {}, "others": {"degrees": 10, "move": 0.01}}')
+    assert run("bake", name, "--leaf", "4", "--poses", out.name, "--certificate", proof).returncode == 0
     return mutated(folder, proof)
 
 
