@@ -64,6 +64,6 @@ TEST_CASE("bounds of all poses within limits are proven, those of smaller limits
         refuted[1] += check(bounds_of(subject, bounded, smaller, options)).violated > 0;
     }
     INFO(bounds << " bounds, of " << cases << " refuted " << refuted[0] << " and " << refuted[1]);
-    CHECK(refuted[0] > cases / 6);
-    CHECK(refuted[1] > cases / 6);
+    CHECK((cases < 12 || refuted[0] > cases / 6)); // a few may have none
+    CHECK((cases < 12 || refuted[1] > cases / 6)); // a few may have none
 }
