@@ -8,6 +8,15 @@ from made_characters import crowd, face
 from sampled_character import Character
 
 checker = pathlib.Path(__file__).resolve().parents[2] / "experiments" / "check_certificate.py"
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(checker.parent))
+from certificate.interval import BITS  # noqa: E402
+from certificate.motion import Bone, Character as Posed  # noqa: E402
+from certificate.path import Piece  # noqa: E402
+from certificate.poses import PoseProof  # noqa: E402
+from certificate.records import AXES  # noqa: E402
+from certificate.times import IntervalProof, Vertices  # noqa: E402
+
 program, shared = sys.argv[1], sys.argv[2] if len(sys.argv) > 2 else ""
 chance = random.Random(7)
 
@@ -81,6 +90,58 @@ def proven(name, limits, folder, *options):
     print("%s: %s" % (os.path.basename(name), said))
 
 
+def turned_by(m, x):
+    return [sum(a * b for a, b in zip(row, x)) for row in m]
+
+
+def row_norm(m):
+    """The root of the greatest sum of a row of M^T M, at least the 2-norm."""
+    columns = list(zip(*m))
+    return math.sqrt(max(sum(abs(sum(x * y for x, y in zip(a, b))) for b in columns) for a in columns))
+
+
+def checker_alone():
+    """How far the checker takes poses to put a vertex from its place, against the same sum in doubles: not less, and
+    not more."""
+    for _ in range(60):
+        bones, links, limits = [], [], []
+        for i in range(4):
+            m = [[chance.uniform(-1, 1) for _ in range(3)] for _ in range(3)]
+            scale, matrix = [chance.uniform(0.3, 3) * chance.choice((-1, 1)) for _ in range(3)], []
+            stretch, t = row_norm(m), [chance.uniform(-1, 1) for _ in range(3)]
+            if i % 2:
+                matrix = [*(x for column in zip(*m) for x in (*column, 0.0)), *t, 1.0]
+            else:
+                m = [[s if r == c else 0.0 for c, s in enumerate(scale)] for r in range(3)]
+                stretch = max(map(abs, scale))
+            bones.append(Bone(i - 1, t, (0.0, 0.0, 0.0, 1.0), scale, matrix))
+            limits.append((chance.choice((0.0, chance.uniform(0, 3), 3.5)), chance.uniform(0, 0.5)))
+            links.append((m, t, stretch, 2 if limits[-1][0] > 3.2 else 2 * math.sin(limits[-1][0] / 2)))
+        bind = [chance.uniform(-1, 1) for _ in range(12)]
+        joints, share = [(3, bind), (1, bind)], chance.randrange(1, 1 << 53)
+        y, d = ([chance.uniform(-1, 1) for _ in range(3)] for _ in range(2))
+        for any_weights in ([], [-0.5, 1.0]):
+            class Surface:
+                positions, rows, children = [y], [[(0, share, 0), (1, (1 << 53) - share, 0)]], []
+            character = Posed(bones, joints, [0.25], any_weights)
+            still = IntervalProof(Vertices(Surface, [0], [([0], [d])]), Surface, character.clip({}, []), AXES[6])
+            weights = still.motion.on(Piece(0, 0, 0), {0, 1}).weights
+            proof, expected = PoseProof(still, character, limits), 0
+            for j, (at, _) in enumerate(joints):
+                rows = [bind[4 * r:4 * r + 3] for r in range(3)]
+                x = y if any_weights else [a + 0.25 * b for a, b in zip(y, d)]
+                x = [a + bind[4 * r + 3] for r, a in enumerate(turned_by(rows, x))]
+                ball = row_norm(rows) * math.hypot(*d) if any_weights else 0
+                for i in range(at, -1, -1):
+                    m, t, stretch, chord = links[i]
+                    x, ball = turned_by(m, x), ball * stretch
+                    step = limits[i][1] + chord * (math.hypot(*x) + ball)
+                    expected += Surface.rows[0][j][1] / 2**53 * step * math.prod(link[2] for link in links[:i])
+                    x = [a + b for a, b in zip(x, t)]
+            got = proof.off(0, weights) / 2**(BITS + 53)
+            assert abs(got - expected) <= 1e-12 * expected, (any_weights, got, expected)
+
+
 def outside(name, limits, box, poses):
     """How far of their size samples leave the box, and how much of it they fill."""
     character, worst = Character(name), -math.inf
@@ -102,6 +163,7 @@ def check(name, limits, folder, poses=300):
     return looseness
 
 
+checker_alone()
 with tempfile.TemporaryDirectory() as folder:
     names = [node.get("name") or "nodes[%d]" % i for i, node in enumerate(Character(face(folder)).nodes)]
     for made in (face(folder), crowd(folder)):
