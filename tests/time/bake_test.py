@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """bake_test.py CINCH [SHARED]: the boxes of `cinch bake` against a reader and sampler of glTF of its own, written from
 the specification: dense samples of every clip must lie inside, and reach nearly as far."""
-import ast, json, math, os, random, re, struct, subprocess, sys, tempfile, zipfile
+import ast, json, math, os, pathlib, random, re, struct, subprocess, sys, tempfile, zipfile
 
 from made_characters import crowd, face, wave
 from sampled_character import Character
@@ -117,10 +117,21 @@ with tempfile.TemporaryDirectory() as folder:
     frames = ["bake", "fish", "--whole", "--leaf", "64", "--level", "-1", "--prove"]
     right = subprocess.run([program, *frames], capture_output=True, text=True)
     assert right.returncode == 0 and ", 0 violated\n" in right.stdout, right.stdout + right.stderr
+
+
+def within_tolerance(name):
+    """A clip as one interval exceeds the bounds at its instants by the tolerance at most, 1 %, at every BV."""
+    made = subprocess.run([program, "bake", name, "--whole", "--report", "--json"], capture_output=True, text=True)
+    added = [row["max_time_ratio"] for row in map(json.loads, made.stdout.splitlines()) if "max_time_ratio" in row]
+    assert added and max(added) <= 1.01 * (1 + 1e-4), (name, added, made.stderr)  # its instants are some of all
+
+
+within_tolerance(str(pathlib.Path(__file__).resolve().parents[2] / "data" / "scenes" / "tube.glb"))
 skins = os.path.join(shared, "meshes", "skin")
 if os.path.isdir(skins):
     for name in sorted(os.listdir(skins)):
         if name.endswith(".glb") and name != "robot.glb":  # which takes this reader minutes
             check(os.path.join(skins, name), 3)
+            within_tolerance(os.path.join(skins, name))
 else:
     print("the shared characters are missing; they were left out")
